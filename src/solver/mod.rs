@@ -1,0 +1,59 @@
+//! The integrator of x'' = f(t, x, x'). It knows no actuator and no FMI.
+//!
+//! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD lanes;
+//! * [`segment`]: the polynomial that a substep leaves behind;
+//! * [`step_control`]: how long the next substep may be;
+//! * [`limits`]: where the motion leaves the range in which it is followed;
+//! * [`trajectory`]: segments one after another, reused where the motion repeats.
+
+pub mod collocation;
+pub mod double;
+pub mod limits;
+pub mod number;
+pub mod segment;
+pub mod step_control;
+mod tables;
+pub mod trajectory;
+
+use double::Double;
+use number::Number;
+
+/// Position x and rate x' of the motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// x.
+    pub position: f64,
+    /// x'.
+    pub rate: f64,
+}
+
+/// An equation of motion x'' = f(t, x, x').
+pub trait Equation {
+    /// The equation seen from a moment, with what depends on that moment only
+    /// worked out.
+    type Local: LocalEquation;
+
+    /// The equation with the origin of time moved to `time`.
+    fn at(&self, time: Double) -> Self::Local;
+
+    /// Whether f does not depend on t. Such an equation must also be
+    /// conservative and even in x', f(x, x') = f(x, −x'): then its motion
+    /// between two turning points is repeated for ever, there and back.
+    fn is_autonomous(&self) -> bool;
+}
+
+/// An [`Equation`] with its origin of time moved to the begin of a substep.
+pub trait LocalEquation {
+    /// What f needs to know of the time, at one moment or at lanes of moments.
+    type Load<N: Number>: Copy;
+
+    /// The load at `offset` after the origin of time.
+    fn load<N: Number>(&self, offset: N) -> Self::Load<N>;
+
+    /// x'' under this load.
+    fn acceleration<N: Number>(&self, load: Self::Load<N>, position: N, rate: N) -> N;
+
+    /// The time in which the motion from here changes by itself, such as
+    /// √(1/|∂f/∂x|), to guess a first substep.
+    fn time_scale(&self, state: State) -> f64;
+}

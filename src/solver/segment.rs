@@ -1,0 +1,195 @@
+//! The motion over one substep as a polynomial.
+
+use nalgebra::{SMatrixView, SVector};
+
+use super::State;
+use super::tables::{Columns, GAUSS_16, PAIRS};
+
+/// Number of coefficients: the twice integrated polynomial of degree 15.
+const TERMS: usize = 2 * PAIRS + 2;
+
+/// x(t) over one substep, u = t/half − 1 ∈ [−1, 1].
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    half: f64,
+    start: State,
+    end: State,
+    /// half² · (a_0, a_2, …, a_14), the Legendre coefficients of f.
+    even: [f64; PAIRS],
+    /// half² · (a_1, a_3, …, a_15).
+    odd: [f64; PAIRS],
+    /// Coefficients of the powers of u; worked out when first needed, since
+    /// whoever runs over a whole segment needs its end only.
+    power: [f64; TERMS],
+    expanded: bool,
+}
+
+impl Segment {
+    /// The motion from `start` to `end` over a substep of twice the length
+    /// `half`, with f given by half² times its Legendre coefficients.
+    #[must_use]
+    pub fn new(
+        half: f64,
+        start: State,
+        end: State,
+        even: [f64; PAIRS],
+        odd: [f64; PAIRS],
+    ) -> Segment {
+        Segment {
+            half,
+            start,
+            end,
+            even,
+            odd,
+            power: [0.0; TERMS],
+            expanded: false,
+        }
+    }
+
+    /// A segment of no length.
+    #[must_use]
+    pub fn nothing(state: State) -> Segment {
+        Segment::new(0.0, state, state, [0.0; PAIRS], [0.0; PAIRS])
+    }
+
+    /// The length of the substep.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        2.0 * self.half
+    }
+
+    /// The state at the end, more accurate than the polynomial between.
+    #[must_use]
+    pub fn end(&self) -> State {
+        self.end
+    }
+
+    /// The size of the last two coefficients of f, in units of the position:
+    /// what is neglected after them is smaller.
+    #[must_use]
+    pub fn tail(&self) -> f64 {
+        self.even[PAIRS - 1].abs() + self.odd[PAIRS - 1].abs()
+    }
+
+    /// Works out the powers of u, which [`Segment::position`] and
+    /// [`Segment::rate`] need.
+    pub fn expand(&mut self) {
+        if self.expanded {
+            return;
+        }
+        let even = product(&GAUSS_16.powers_from_even, &self.even);
+        let odd = product(&GAUSS_16.powers_from_odd, &self.odd);
+        for i in 0..PAIRS {
+            self.power[2 * i + 2] = even[i];
+            self.power[2 * i + 3] = odd[i];
+        }
+        // The first two powers follow from the state at u = −1.
+        let (mut slope, mut value) = (0.0, 0.0);
+        for k in (2..TERMS).rev() {
+            let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+            slope += sign * k as f64 * self.power[k];
+            value += sign * self.power[k];
+        }
+        self.power[1] = self.half * self.start.rate + slope;
+        self.power[0] = self.start.position + (self.power[1] - value);
+        self.expanded = true;
+    }
+
+    fn local(&self, offset: f64) -> f64 {
+        debug_assert!(self.expanded);
+        (offset - self.half) / self.half
+    }
+
+    /// x at `offset` after the begin of the segment.
+    #[must_use]
+    pub fn position(&self, offset: f64) -> f64 {
+        let u = self.local(offset);
+        self.power.iter().rev().fold(0.0, |sum, p| sum * u + p)
+    }
+
+    /// x' at `offset` after the begin of the segment.
+    #[must_use]
+    pub fn rate(&self, offset: f64) -> f64 {
+        let u = self.local(offset);
+        let slope = (1..TERMS)
+            .rev()
+            .fold(0.0, |sum, k| sum * u + k as f64 * self.power[k]);
+        slope / self.half
+    }
+
+    /// The offset in (`from`, `to`] at which `f` crosses zero, where it has
+    /// opposite signs at the two ends. Bisection with secant steps (the
+    /// "Illinois" rule of M. Dowell and P. Jarratt, BIT 11 (1971) 168–174), to
+    /// the last bit of the offset or to an exact zero.
+    #[must_use]
+    pub fn crossing(&self, from: f64, to: f64, f: impl Fn(&Segment, f64) -> f64) -> f64 {
+        let (mut a, mut b) = (from, to);
+        let (mut f_a, mut f_b) = (f(self, a), f(self, b));
+        if f_a == 0.0 {
+            return a;
+        }
+        // Each round at least halves a bracket every second time; 200 rounds
+        // are far beyond what 53 bits can take.
+        for _ in 0..200 {
+            if f_b == 0.0 || (b - a).abs() <= f64::EPSILON * b.abs() {
+                break;
+            }
+            let secant = b - f_b * (b - a) / (f_b - f_a);
+            let inside = (secant - a) * (secant - b) < 0.0;
+            let c = if inside { secant } else { 0.5 * (a + b) };
+            if c == a || c == b {
+                break;
+            }
+            let f_c = f(self, c);
+            if f_c * f_b < 0.0 {
+                (a, f_a) = (b, f_b);
+            } else {
+                f_a *= 0.5;
+            }
+            (b, f_b) = (c, f_c);
+        }
+        b
+    }
+}
+
+fn product(columns: &Columns, values: &[f64; PAIRS]) -> SVector<f64, PAIRS> {
+    SMatrixView::<f64, PAIRS, PAIRS>::from_slice(columns.as_flattened()) * SVector::from(*values)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// x = (t − 1)³ + (t − 1) on [0, 4]: x'' = 6(t − 1) = 6 P_0 + 12 P_1(u).
+    fn cubic() -> Segment {
+        let start = State {
+            position: -2.0,
+            rate: 4.0,
+        };
+        let end = State {
+            position: 30.0,
+            rate: 28.0,
+        };
+        let (mut even, mut odd) = ([0.0; PAIRS], [0.0; PAIRS]);
+        (even[0], odd[0]) = (4.0 * 6.0, 4.0 * 12.0);
+        let mut segment = Segment::new(2.0, start, end, even, odd);
+        segment.expand();
+        segment
+    }
+
+    #[test]
+    fn position_and_rate_are_those_of_the_polynomial() {
+        let x = |t: f64| (t - 1.0).powi(3) + (t - 1.0);
+        let v = |t: f64| 3.0 * (t - 1.0).powi(2) + 1.0;
+        for t in [0.0, 0.3, 1.0, 2.7, 4.0] {
+            assert!((cubic().position(t) - x(t)).abs() < 1e-14);
+            assert!((cubic().rate(t) - v(t)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_crossing_is_found_to_the_last_bits() {
+        let root = cubic().crossing(0.0, 4.0, Segment::position);
+        assert!((root - 1.0).abs() < 1e-15, "{root}");
+    }
+}
