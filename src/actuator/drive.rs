@@ -1,0 +1,270 @@
+//! Voltage and prestress as functions of time.
+//!
+//! Each input is a polynomial in the time since the host last set it: its value
+//! and its derivatives. A harmonic voltage may be added to it (Eq. 21), which
+//! the model follows exactly at any communication step.
+
+use crate::solver::double::Double;
+use crate::solver::number::Number;
+
+/// Derivatives of an input that are taken into account: orders 1 to 4.
+pub const HIGHEST_DERIVATIVE: usize = 4;
+
+/// An input from the moment at which it was set: Σ term[k] sᵏ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Polynomial {
+    term: [f64; HIGHEST_DERIVATIVE + 1],
+}
+
+impl Polynomial {
+    /// A constant input.
+    #[must_use]
+    pub const fn constant(value: f64) -> Polynomial {
+        let mut term = [0.0; HIGHEST_DERIVATIVE + 1];
+        term[0] = value;
+        Polynomial { term }
+    }
+
+    /// The input with its value replaced.
+    pub fn set_value(&mut self, value: f64) {
+        self.term[0] = value;
+    }
+
+    /// The input with its derivative of `order` 1 to 4 replaced.
+    pub fn set_derivative(&mut self, order: usize, value: f64) {
+        let factorial: f64 = (1..=order).map(|k| k as f64).product();
+        self.term[order] = value / factorial;
+    }
+
+    /// The input with all derivatives 0.
+    pub fn clear_derivatives(&mut self) {
+        self.term[1..].fill(0.0);
+    }
+
+    /// Whether the input keeps its value.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.term[1..].iter().all(|term| *term == 0.0)
+    }
+
+    /// The input seen from the moment `shift` later.
+    #[must_use]
+    pub fn shifted(&self, shift: f64) -> Polynomial {
+        let mut term = self.term;
+        if !self.is_constant() {
+            // Repeated synthetic division by (s − shift).
+            for low in 0..HIGHEST_DERIVATIVE {
+                for k in (low..HIGHEST_DERIVATIVE).rev() {
+                    term[k] += shift * term[k + 1];
+                }
+            }
+        }
+        Polynomial { term }
+    }
+
+    /// The value at the moment in which the input was set.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.term[0]
+    }
+
+    /// The value at `offset` later.
+    #[inline(always)]
+    pub fn at<N: Number>(&self, offset: N) -> N {
+        let term = |k: usize| offset.same(self.term[k]);
+        let mut sum = term(HIGHEST_DERIVATIVE);
+        for k in (0..HIGHEST_DERIVATIVE).rev() {
+            sum = sum.mul_add(offset, term(k));
+        }
+        sum
+    }
+}
+
+/// The built-in alternating voltage φ_a sin(ωt + ϑ), t being the time of the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Harmonic {
+    /// φ_a, nondimensional voltage.
+    pub amplitude: f64,
+    /// ω in radians per unit of time.
+    pub frequency: f64,
+    /// ϑ in radians.
+    pub phase: f64,
+}
+
+impl Harmonic {
+    /// No alternating voltage.
+    pub const OFF: Harmonic = Harmonic {
+        amplitude: 0.0,
+        frequency: 0.0,
+        phase: 0.0,
+    };
+
+    /// The angle ωt + ϑ at `time`, reduced to a few turns before it is rounded:
+    /// at t = 1e9 an f64 angle would have lost half its digits.
+    fn angle(&self, time: Double) -> f64 {
+        const TURN: Double = Double {
+            high: std::f64::consts::TAU,
+            low: 2.449_293_598_294_706_4e-16,
+        };
+        let angle = time.scale(self.frequency).add(Double::new(self.phase));
+        let turns = (angle.value() / TURN.high).round();
+        angle.sub(TURN.scale(turns)).value()
+    }
+}
+
+/// Voltage and prestress from `since` on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Time of the model at which the inputs were set.
+    pub since: Double,
+    /// φ, the voltage that the host sets.
+    pub voltage: Polynomial,
+    /// S, prestress.
+    pub prestress: Polynomial,
+    /// The built-in alternating voltage.
+    pub harmonic: Harmonic,
+}
+
+impl Drive {
+    /// Constant voltage and prestress, nothing alternating.
+    #[must_use]
+    pub const fn constant(voltage: f64, prestress: f64) -> Drive {
+        Drive {
+            since: Double::ZERO,
+            voltage: Polynomial::constant(voltage),
+            prestress: Polynomial::constant(prestress),
+            harmonic: Harmonic::OFF,
+        }
+    }
+
+    /// Whether voltage and prestress keep their values.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        let alternating = self.harmonic.amplitude != 0.0 && self.harmonic.frequency != 0.0;
+        !alternating && self.voltage.is_constant() && self.prestress.is_constant()
+    }
+
+    /// The same drive with its inputs counted from `time` on.
+    #[must_use]
+    pub fn rebased(&self, time: Double) -> Drive {
+        let shift = time.sub(self.since).value();
+        Drive {
+            since: time,
+            voltage: self.voltage.shifted(shift),
+            prestress: self.prestress.shifted(shift),
+            harmonic: self.harmonic,
+        }
+    }
+
+    /// The drive seen from `time`.
+    #[must_use]
+    pub fn at(&self, time: Double) -> LocalDrive {
+        let Drive {
+            mut voltage,
+            prestress,
+            ..
+        } = self.rebased(time);
+        let Harmonic {
+            amplitude,
+            frequency,
+            ..
+        } = self.harmonic;
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        if amplitude != 0.0 {
+            (sine, cosine) = self.harmonic.angle(time).sin_cos();
+            if frequency == 0.0 {
+                voltage.set_value(voltage.value() + amplitude * sine);
+            }
+        }
+        LocalDrive {
+            voltage,
+            prestress,
+            in_phase: amplitude * sine,
+            quadrature: amplitude * cosine,
+            frequency: if amplitude == 0.0 { 0.0 } else { frequency },
+        }
+    }
+}
+
+/// A [`Drive`] with its origin of time moved.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalDrive {
+    voltage: Polynomial,
+    prestress: Polynomial,
+    /// φ_a sin and φ_a cos of the angle at the origin.
+    in_phase: f64,
+    quadrature: f64,
+    /// 0 where nothing alternates.
+    frequency: f64,
+}
+
+impl LocalDrive {
+    /// Total voltage φ + φ_a sin(ωt + ϑ) at `offset` after the origin.
+    #[inline(always)]
+    pub fn voltage<N: Number>(&self, offset: N) -> N {
+        let polynomial = if self.voltage.is_constant() {
+            offset.same(self.voltage.value())
+        } else {
+            self.voltage.at(offset)
+        };
+        if self.frequency == 0.0 {
+            return polynomial;
+        }
+        let (sine, cosine) = (offset * offset.same(self.frequency)).sin_cos();
+        let alternating = cosine.mul_add(
+            offset.same(self.in_phase),
+            sine * offset.same(self.quadrature),
+        );
+        polynomial + alternating
+    }
+
+    /// Prestress at `offset` after the origin.
+    #[inline(always)]
+    pub fn prestress<N: Number>(&self, offset: N) -> N {
+        if self.prestress.is_constant() {
+            return offset.same(self.prestress.value());
+        }
+        self.prestress.at(offset)
+    }
+
+    /// Angular frequency of the alternating voltage, 0 where there is none.
+    #[must_use]
+    pub fn frequency(&self) -> f64 {
+        self.frequency
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shifted_input_is_the_same_function() {
+        let mut input = Polynomial::constant(0.5);
+        for (order, value) in [(1, 0.2), (2, -0.3), (3, 0.7), (4, 1.1)] {
+            input.set_derivative(order, value);
+        }
+        let s: f64 = 0.4;
+        let direct = 0.5 + 0.2 * s - 0.15 * s * s + 0.7 / 6.0 * s.powi(3) + 1.1 / 24.0 * s.powi(4);
+        assert!((input.at(s) - direct).abs() < 1e-15);
+        assert!((input.shifted(0.3).at(0.1) - direct).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_angle_keeps_its_digits_at_late_times() {
+        let harmonic = Harmonic {
+            amplitude: 1.0,
+            frequency: 0.1471,
+            phase: 0.3,
+        };
+        // A million turns later, to the rounding of the time itself.
+        let turns = 1e6;
+        let late = Double::new(turns)
+            .mul(Double {
+                high: std::f64::consts::TAU,
+                low: 2.449_293_598_294_706_4e-16,
+            })
+            .div(Double::new(0.1471));
+        assert!((harmonic.angle(late) - 0.3).abs() < 1e-15);
+    }
+}

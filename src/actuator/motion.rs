@@ -1,0 +1,207 @@
+//! The equation of motion (Eq. 16) and its energy (Eq. 18), nondimensional.
+
+use super::coefficients::Coefficients;
+use super::drive::{Drive, LocalDrive};
+use crate::solver::double::Double;
+use crate::solver::number::Number;
+use crate::solver::{Equation, LocalEquation, State};
+
+/// The motion of an actuator under a drive.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// The actuator.
+    pub coefficients: Coefficients,
+    /// Its voltage and prestress.
+    pub drive: Drive,
+}
+
+/// Squared voltage φ² and prestress S at a moment, or at lanes of moments.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<N> {
+    /// φ².
+    pub voltage_squared: N,
+    /// S.
+    pub prestress: N,
+}
+
+/// Acceleration λ'' of the stretch λ with rate λ' under a load, Eq. 16 solved
+/// for it. Multiplied by λ⁷ it needs a single division:
+///
+/// ```text
+/// λ'' = [6λ'² + λ² + λ⁶ (S λ − λ² (linear + λ² (cubic − φ² + quintic λ²)))] / (λ (c λ⁶ + 2))
+/// ```
+#[inline(always)]
+pub fn acceleration<N: Number>(
+    coefficients: &Coefficients,
+    load: Load<N>,
+    stretch: N,
+    rate: N,
+) -> N {
+    let number = |value: f64| stretch.same(value);
+    let square = stretch * stretch;
+    let sixth = square * square * square;
+    let cubic = number(coefficients.cubic) - load.voltage_squared;
+    let upper = square.mul_add(number(coefficients.quintic), cubic);
+    let elastic = square.mul_add(upper, number(coefficients.linear));
+    let force = load.prestress * stretch - square * elastic;
+    let inertial = (rate * rate).mul_add(number(6.0), square);
+    let inertia = sixth.mul_add(number(coefficients.inertia), number(2.0));
+    sixth.mul_add(force, inertial) / (stretch * inertia)
+}
+
+/// The Hamiltonian 𝓗 of Eq. 18, nondimensional as in Eq. 19 and 0 for the
+/// actuator at rest at λ = 1. Constant while voltage and prestress are.
+#[must_use]
+pub fn energy(coefficients: &Coefficients, load: Load<f64>, state: State) -> f64 {
+    let State {
+        position: stretch,
+        rate,
+    } = state;
+    let square = stretch * stretch;
+    // λ² − 1 without cancellation near λ = 1.
+    let growth = (stretch - 1.0) * (stretch + 1.0);
+    let kinetic = 2.0 * (coefficients.inertia + 2.0 / square.powi(3)) * rate * rate;
+    // 2λ² + λ⁻⁴ − 3 = (λ²−1)² (2λ²+1) / λ⁴.
+    let bulk = growth * growth * (2.0 * square + 1.0) / (square * square);
+    let electric = load.voltage_squared * growth * (square + 1.0);
+    let mechanical = 4.0 * load.prestress * (stretch - 1.0);
+    // 4[γ(λ²−1) + τλ²(λ²−1) + ½Eλ²(λ²−1)²] in the folded coefficients:
+    // λ² = 1 + g gives 2(linear−1+cubic+quintic)g + (cubic + 2·quintic)g² + ⅔·quintic·g³.
+    let Coefficients {
+        linear,
+        cubic,
+        quintic,
+        ..
+    } = *coefficients;
+    let surface = growth
+        * (2.0 * (linear - 1.0 + cubic + quintic)
+            + growth * (cubic + 2.0 * quintic + growth * (2.0 / 3.0) * quintic));
+    kinetic + bulk - electric - mechanical + surface
+}
+
+impl Equation for Motion {
+    type Local = LocalMotion;
+
+    fn at(&self, time: Double) -> LocalMotion {
+        LocalMotion {
+            coefficients: self.coefficients,
+            drive: self.drive.at(time),
+        }
+    }
+
+    fn is_autonomous(&self) -> bool {
+        self.drive.is_constant()
+    }
+}
+
+/// A [`Motion`] with its origin of time moved.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalMotion {
+    coefficients: Coefficients,
+    drive: LocalDrive,
+}
+
+impl LocalEquation for LocalMotion {
+    type Load<N: Number> = Load<N>;
+
+    #[inline(always)]
+    fn load<N: Number>(&self, offset: N) -> Load<N> {
+        let voltage = self.drive.voltage(offset);
+        Load {
+            voltage_squared: voltage * voltage,
+            prestress: self.drive.prestress(offset),
+        }
+    }
+
+    #[inline(always)]
+    fn acceleration<N: Number>(&self, load: Load<N>, position: N, rate: N) -> N {
+        acceleration(&self.coefficients, load, position, rate)
+    }
+
+    /// 1/√|∂λ''/∂λ| with the terms of the stiffness added up by size, since
+    /// their sum may vanish, and not longer than 1/2ω of an alternating
+    /// voltage, which drives the motion by its square.
+    fn time_scale(&self, state: State) -> f64 {
+        let load = self.load(0.0);
+        let square = state.position * state.position;
+        let Coefficients {
+            inertia,
+            linear,
+            cubic,
+            quintic,
+        } = self.coefficients;
+        let stiffness = 5.0 / square.powi(3)
+            + linear.abs()
+            + square * (3.0 * (cubic - load.voltage_squared).abs() + square * 5.0 * quintic);
+        let mass = inertia + 2.0 / square.powi(3);
+        (mass / stiffness).sqrt().min(0.5 / self.drive.frequency())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::actuator::Parameters;
+
+    fn reference() -> Coefficients {
+        Coefficients::fold(&Parameters {
+            aspect: 100.0,
+            surface_energy: 0.05,
+            surface_tension: 0.03,
+            surface_elasticity: 0.2,
+        })
+    }
+
+    /// Eq. 16 as it stands in the paper, solved for the acceleration.
+    fn paper(load: Load<f64>, x: f64, v: f64) -> f64 {
+        let (gamma, tau, elasticity) = (0.05, 0.03, 0.2);
+        let surface = gamma * x
+            + tau * (2.0 * x.powi(3) - x)
+            + 0.5 * elasticity * x * (x * x - 1.0) * (3.0 * x * x - 1.0);
+        let force = 6.0 * v * v / x.powi(7) - (x - x.powi(-5))
+            + load.prestress
+            + load.voltage_squared * x.powi(3)
+            - 2.0 * surface;
+        force / (100.0 + 2.0 / x.powi(6))
+    }
+
+    #[test]
+    fn the_acceleration_is_that_of_the_paper() {
+        let load = Load {
+            voltage_squared: 0.36,
+            prestress: 0.2,
+        };
+        for (x, v) in [(1.0, 0.0), (0.6, 0.3), (1.7, -0.1), (3.0, 0.5)] {
+            let ours = acceleration(&reference(), load, x, v);
+            assert!((ours - paper(load, x, v)).abs() < 1e-14 * ours.abs().max(1.0));
+        }
+    }
+
+    /// d𝓗/dt = 0 along Eq. 16, by central differences of 𝓗.
+    #[test]
+    fn the_energy_is_that_of_the_motion() {
+        let load = Load {
+            voltage_squared: 0.36,
+            prestress: 0.2,
+        };
+        let coefficients = reference();
+        let at = |x: f64, v: f64| {
+            energy(
+                &coefficients,
+                load,
+                State {
+                    position: x,
+                    rate: v,
+                },
+            )
+        };
+        for (x, v) in [(1.1, 0.05), (0.7, -0.02), (1.6, 0.1)] {
+            let step = 1e-5;
+            let by_stretch = (at(x + step, v) - at(x - step, v)) / (2.0 * step);
+            let by_rate = (at(x, v + step) - at(x, v - step)) / (2.0 * step);
+            let drift = by_stretch * v + by_rate * acceleration(&coefficients, load, x, v);
+            assert!(drift.abs() < 1e-9, "drift {drift} at ({x}, {v})");
+        }
+        assert_eq!(at(1.0, 0.0), 0.0);
+    }
+}
