@@ -1,0 +1,157 @@
+//! What stands behind an `fmi2Component`: an instance and its host; and the
+//! guard through which every call goes.
+
+use std::ffi::{CStr, CString};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use fmi::fmi2::binding::{
+    fmi2CallbackFunctions, fmi2Component, fmi2Status, fmi2Status_fmi2Discard, fmi2Status_fmi2Error,
+    fmi2Status_fmi2Fatal, fmi2Status_fmi2OK, fmi2Status_fmi2Warning,
+};
+
+use crate::description::LOG_CATEGORIES;
+use crate::slave::{Call, Event, Fault, Instance, Severity};
+
+/// Log categories by their place in [`LOG_CATEGORIES`].
+const EVENTS: usize = 0;
+const WARNINGS: usize = 1;
+const ERRORS: usize = 2;
+
+/// An instance with its host.
+pub struct Component {
+    pub instance: Instance,
+    pub host: Host,
+}
+
+/// The host's side: who is told what.
+pub struct Host {
+    /// Copied by value: hosts may free or reuse the structure that they passed.
+    callbacks: fmi2CallbackFunctions,
+    name: CString,
+    enabled: [bool; LOG_CATEGORIES.len()],
+}
+
+impl Host {
+    pub fn new(callbacks: fmi2CallbackFunctions, name: &CStr, logging_on: bool) -> Host {
+        let mut enabled = [true; LOG_CATEGORIES.len()];
+        enabled[EVENTS] = logging_on;
+        Host {
+            callbacks,
+            name: name.to_owned(),
+            enabled,
+        }
+    }
+
+    /// Switches categories on or off; none listed means all. Those that are
+    /// not listed are switched off when others are switched on.
+    pub fn set_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Fault> {
+        let mut enabled = if on && !categories.is_empty() {
+            [false; LOG_CATEGORIES.len()]
+        } else if categories.is_empty() {
+            [on; LOG_CATEGORIES.len()]
+        } else {
+            self.enabled
+        };
+        for wanted in categories {
+            let known = LOG_CATEGORIES
+                .iter()
+                .position(|(name, _)| name.as_bytes() == wanted.to_bytes());
+            let Some(place) = known else {
+                let names = LOG_CATEGORIES.map(|(name, _)| name).join(", ");
+                return Err(Fault::error(format!(
+                    "there is no log category of that name; there are {names}"
+                )));
+            };
+            enabled[place] = on;
+        }
+        self.enabled = enabled;
+        Ok(())
+    }
+
+    fn log(&self, status: fmi2Status, category: usize, text: &str) {
+        let Some(logger) = self.callbacks.logger else {
+            return;
+        };
+        if !self.enabled[category] {
+            return;
+        }
+        // The host takes the text for a printf format.
+        let text: String = text.chars().filter(|&c| c != '%' && c != '\0').collect();
+        let (Ok(category), Ok(text)) =
+            (CString::new(LOG_CATEGORIES[category].0), CString::new(text))
+        else {
+            return;
+        };
+        // SAFETY: the logger is a function of the host with this signature
+        // (FMI 2.0, section 2.1.5), all texts end with NUL and outlive the
+        // call, and the format has no conversion that would ask for arguments.
+        unsafe {
+            logger(
+                self.callbacks.componentEnvironment,
+                self.name.as_ptr(),
+                status,
+                category.as_ptr(),
+                text.as_ptr(),
+            );
+        }
+    }
+
+    /// Tells the host why a call was not done, and gives its status.
+    pub fn refuse(&self, function: &str, fault: &Fault) -> fmi2Status {
+        let (status, category) = match fault.severity {
+            Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
+            Severity::Error => (fmi2Status_fmi2Error, ERRORS),
+            Severity::Fatal => (fmi2Status_fmi2Fatal, ERRORS),
+        };
+        self.log(status, category, &format!("{function}: {}", fault.text));
+        status
+    }
+
+    fn announce(&self, function: &str, event: &Event) -> fmi2Status {
+        let (status, category) = if event.warning {
+            (fmi2Status_fmi2Warning, WARNINGS)
+        } else {
+            (fmi2Status_fmi2OK, EVENTS)
+        };
+        self.log(status, category, &format!("{function}: {}", event.text));
+        status
+    }
+}
+
+/// Runs `body` on the component behind the pointer, if the phase permits the
+/// call: the one way from C into the slave. No panic leaves it.
+pub fn guarded(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
+    body: impl FnOnce(&mut Component) -> Result<Option<Event>, Fault>,
+) -> fmi2Status {
+    // SAFETY: a component that is not null comes from `fmi2Instantiate`, was
+    // not freed, and is used by one call at a time: the host owes it to us
+    // (FMI 2.0, sections 2.1.6 and 2.1.7).
+    let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
+        return fmi2Status_fmi2Error;
+    };
+    let phase = component.instance.phase();
+    if !phase.permits(call) {
+        let fatal = phase == crate::slave::Phase::Fatal;
+        let severity = if fatal {
+            Severity::Fatal
+        } else {
+            Severity::Error
+        };
+        let text = format!("not allowed in the phase \"{}\"", phase.name());
+        return component.host.refuse(function, &Fault { severity, text });
+    }
+    match catch_unwind(AssertUnwindSafe(|| body(component))) {
+        Ok(Ok(None)) => fmi2Status_fmi2OK,
+        Ok(Ok(Some(event))) => component.host.announce(function, &event),
+        Ok(Err(fault)) => component.host.refuse(function, &fault),
+        Err(_) => {
+            component.instance.give_up();
+            let text = "an internal error; free this instance and report the fault".into();
+            let severity = Severity::Fatal;
+            component.host.refuse(function, &Fault { severity, text })
+        }
+    }
+}

@@ -1,0 +1,403 @@
+//! The C functions of FMI 2.0 (`fmi2Functions.h`): the only room with unsafe
+//! code. Each function turns pointers into slices and delegates to one method
+//! of the slave, inside the guard of [`component`].
+//!
+//! Safety of all of them: the host owes what the standard says, that is,
+//! components from `fmi2Instantiate` that have not been freed and are used by
+//! one call at a time, and arrays as long as their counts say. Null pointers
+//! are answered with an error everywhere.
+#![expect(unsafe_code, reason = "this room speaks C")]
+#![expect(
+    missing_docs,
+    reason = "the FMI 2.0 standard documents these functions"
+)]
+#![expect(
+    clippy::missing_safety_doc,
+    reason = "said once, for all of them, above"
+)]
+#![expect(non_snake_case, reason = "names of the standard")]
+
+mod component;
+mod conformance;
+mod pointers;
+
+use std::ffi::CStr;
+
+use fmi::fmi2::binding::*;
+use libc::c_char;
+
+use crate::description::GUID;
+use crate::slave::{Call, Fault, Instance, Type};
+use component::{Component, Host, guarded};
+pub use conformance::EXPORTED_NAMES;
+use pointers::{place, slice, slice_mut, text};
+
+// ---- Inquire version, create and destroy ----
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    c: fmi2Component,
+    loggingOn: fmi2Boolean,
+    nCategories: usize,
+    categories: *const fmi2String,
+) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2SetDebugLogging",
+        Call::SetDebugLogging,
+        |component| {
+            // SAFETY: see the head of this file.
+            let categories = unsafe { slice(categories, nCategories, "categories") }?;
+            let categories: Result<Vec<&CStr>, Fault> = categories
+                .iter()
+                // SAFETY: see the head of this file.
+                .map(|&category| unsafe { text(category, "a category") })
+                .collect();
+            component.host.set_logging(loggingOn != 0, &categories?)?;
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: fmi2String,
+    fmuType: fmi2Type,
+    fmuGUID: fmi2String,
+    _fmuResourceLocation: fmi2String,
+    functions: *const fmi2CallbackFunctions,
+    _visible: fmi2Boolean,
+    loggingOn: fmi2Boolean,
+) -> fmi2Component {
+    // SAFETY: null, or the host's structure (FMI 2.0, section 2.1.5).
+    let Some(&callbacks) = (unsafe { functions.as_ref() }) else {
+        return std::ptr::null_mut();
+    };
+    // SAFETY: see the head of this file.
+    let name = unsafe { text(instanceName, "the instance name") };
+    let host = Host::new(callbacks, name.as_ref().unwrap_or(&c""), loggingOn != 0);
+    let accept = || {
+        if name?.is_empty() {
+            return Err(Fault::error("the instance name is empty".into()));
+        }
+        if fmuType != fmi2Type_fmi2CoSimulation {
+            return Err(Fault::error("only co-simulation is offered".into()));
+        }
+        // SAFETY: see the head of this file.
+        let guid = unsafe { text(fmuGUID, "the GUID") }?;
+        if guid.to_bytes() != GUID.as_bytes() {
+            return Err(Fault::error(format!(
+                "the GUID is not {GUID}: binary and modelDescription.xml do not belong together"
+            )));
+        }
+        Ok(())
+    };
+    match accept() {
+        Ok(()) => {
+            let instance = Instance::new();
+            Box::into_raw(Box::new(Component { instance, host })).cast()
+        }
+        Err(fault) => {
+            host.refuse("fmi2Instantiate", &fault);
+            std::ptr::null_mut()
+        }
+    }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+    if !c.is_null() {
+        // SAFETY: made by `fmi2Instantiate`, and freed once (see the head).
+        drop(unsafe { Box::from_raw(c.cast::<Component>()) });
+    }
+}
+
+// ---- Enter and exit initialization, terminate, reset ----
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    c: fmi2Component,
+    toleranceDefined: fmi2Boolean,
+    tolerance: fmi2Real,
+    startTime: fmi2Real,
+    stopTimeDefined: fmi2Boolean,
+    stopTime: fmi2Real,
+) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2SetupExperiment",
+        Call::SetupExperiment,
+        |component| {
+            let tolerance = (toleranceDefined != 0).then_some(tolerance);
+            let stop_time = (stopTimeDefined != 0).then_some(stopTime);
+            component
+                .instance
+                .setup_experiment(tolerance, startTime, stop_time)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2EnterInitializationMode",
+        Call::EnterInitialization,
+        |component| {
+            component.instance.enter_initialization();
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2ExitInitializationMode",
+        Call::ExitInitialization,
+        |component| {
+            component.instance.exit_initialization()?;
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
+    guarded(c, "fmi2Terminate", Call::Terminate, |component| {
+        component.instance.terminate();
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
+    guarded(c, "fmi2Reset", Call::Reset, |component| {
+        component.instance.reset();
+        Ok(None)
+    })
+}
+
+// ---- Get and set variables ----
+
+/// The getter of one type; `$convert` makes its values of ours.
+macro_rules! getter {
+    ($function:ident, $value:ty, $type:expr, $convert:expr) => {
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $function(
+            c: fmi2Component,
+            vr: *const fmi2ValueReference,
+            nvr: usize,
+            value: *mut $value,
+        ) -> fmi2Status {
+            guarded(c, stringify!($function), Call::Get, |component| {
+                // SAFETY: see the head of this file.
+                let references = unsafe { slice(vr, nvr, "vr") }?;
+                // SAFETY: see the head of this file.
+                let values = unsafe { slice_mut(value, nvr, "value") }?;
+                let convert: fn(f64) -> $value = $convert;
+                component.instance.get($type, references, |place, number| {
+                    values[place] = convert(number)
+                })?;
+                Ok(None)
+            })
+        }
+    };
+}
+
+/// The setter of one type; `$convert` makes our values of its.
+macro_rules! setter {
+    ($function:ident, $value:ty, $type:expr, $convert:expr) => {
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $function(
+            c: fmi2Component,
+            vr: *const fmi2ValueReference,
+            nvr: usize,
+            value: *const $value,
+        ) -> fmi2Status {
+            guarded(c, stringify!($function), Call::Set, |component| {
+                // SAFETY: see the head of this file.
+                let references = unsafe { slice(vr, nvr, "vr") }?;
+                // SAFETY: see the head of this file.
+                let values = unsafe { slice(value, nvr, "value") }?;
+                let convert: fn($value) -> f64 = $convert;
+                component
+                    .instance
+                    .set($type, references, |place| convert(values[place]))?;
+                Ok(None)
+            })
+        }
+    };
+}
+
+getter!(fmi2GetReal, fmi2Real, Type::Real, |number| number);
+getter!(fmi2GetInteger, fmi2Integer, Type::Integer, |number| number
+    as fmi2Integer);
+getter!(fmi2GetBoolean, fmi2Boolean, Type::Boolean, |number| number
+    as fmi2Boolean);
+getter!(fmi2GetString, fmi2String, Type::String, |_| std::ptr::null(
+));
+setter!(fmi2SetReal, fmi2Real, Type::Real, |value| value);
+setter!(fmi2SetInteger, fmi2Integer, Type::Integer, f64::from);
+setter!(fmi2SetBoolean, fmi2Boolean, Type::Boolean, f64::from);
+setter!(fmi2SetString, fmi2String, Type::String, |_| 0.0);
+
+// ---- Co-simulation ----
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2SetRealInputDerivatives",
+        Call::SetInputDerivatives,
+        |component| {
+            // SAFETY: see the head of this file.
+            let references = unsafe { slice(vr, nvr, "vr") }?;
+            // SAFETY: see the head of this file.
+            let orders = unsafe { slice(order, nvr, "order") }?;
+            // SAFETY: see the head of this file.
+            let values = unsafe { slice(value, nvr, "value") }?;
+            component
+                .instance
+                .set_input_derivatives(references, orders, values)?;
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    guarded(c, "fmi2DoStep", Call::DoStep, |component| {
+        component
+            .instance
+            .do_step(currentCommunicationPoint, communicationStepSize)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    guarded(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
+        // SAFETY: see the head of this file.
+        let value = unsafe { place(value, "value") }?;
+        if s != fmi2StatusKind_fmi2LastSuccessfulTime {
+            return Err(no_such_status());
+        }
+        *value = component.instance.last_successful_time();
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBooleanStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    guarded(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
+        // SAFETY: see the head of this file.
+        let value = unsafe { place(value, "value") }?;
+        if s != fmi2StatusKind_fmi2Terminated {
+            return Err(no_such_status());
+        }
+        *value = component.instance.wants_to_terminate().into();
+        Ok(None)
+    })
+}
+
+fn no_such_status() -> Fault {
+    Fault::discard(
+        "this status is not available: steps are done when fmi2DoStep returns; \
+         ask for fmi2LastSuccessfulTime (Real) or fmi2Terminated (Boolean)"
+            .into(),
+    )
+}
+
+/// Functions that ask about a step in progress: there never is one.
+macro_rules! no_status {
+    ($($function:ident: $value:ty;)*) => {$(
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $function(
+            c: fmi2Component,
+            _s: fmi2StatusKind,
+            _value: *mut $value,
+        ) -> fmi2Status {
+            guarded(c, stringify!($function), Call::GetStatus, |_| Err(no_such_status()))
+        }
+    )*};
+}
+
+no_status! {
+    fmi2GetStatus: fmi2Status;
+    fmi2GetIntegerStatus: fmi2Integer;
+    fmi2GetStringStatus: fmi2String;
+}
+
+/// Functions of capabilities that the description does not declare. They are
+/// exported because some hosts bind every name of the header.
+macro_rules! not_offered {
+    ($($function:ident($($argument:ident: $type:ty),*);)*) => {$(
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $function(c: fmi2Component, $($argument: $type),*) -> fmi2Status {
+            $(let _ = $argument;)*
+            guarded(c, stringify!($function), Call::NotOffered, |_| {
+                Err(Fault::error("not offered, as modelDescription.xml says".into()))
+            })
+        }
+    )*};
+}
+
+not_offered! {
+    fmi2GetFMUstate(state: *mut fmi2FMUstate);
+    fmi2SetFMUstate(state: fmi2FMUstate);
+    fmi2FreeFMUstate(state: *mut fmi2FMUstate);
+    fmi2SerializedFMUstateSize(state: fmi2FMUstate, size: *mut usize);
+    fmi2SerializeFMUstate(state: fmi2FMUstate, serialized: *mut fmi2Byte, size: usize);
+    fmi2DeSerializeFMUstate(serialized: *const fmi2Byte, size: usize, state: *mut fmi2FMUstate);
+    fmi2GetDirectionalDerivative(
+        unknown: *const fmi2ValueReference, unknowns: usize,
+        known: *const fmi2ValueReference, knowns: usize,
+        known_derivative: *const fmi2Real, unknown_derivative: *mut fmi2Real
+    );
+    fmi2EnterEventMode();
+    fmi2NewDiscreteStates(info: *mut fmi2EventInfo);
+    fmi2EnterContinuousTimeMode();
+    fmi2CompletedIntegratorStep(
+        no_set_prior: fmi2Boolean, enter_event_mode: *mut fmi2Boolean, terminate: *mut fmi2Boolean
+    );
+    fmi2SetTime(time: fmi2Real);
+    fmi2SetContinuousStates(states: *const fmi2Real, count: usize);
+    fmi2GetDerivatives(derivatives: *mut fmi2Real, count: usize);
+    fmi2GetEventIndicators(indicators: *mut fmi2Real, count: usize);
+    fmi2GetContinuousStates(states: *mut fmi2Real, count: usize);
+    fmi2GetNominalsOfContinuousStates(nominals: *mut fmi2Real, count: usize);
+    fmi2GetRealOutputDerivatives(
+        vr: *const fmi2ValueReference, nvr: usize, order: *const fmi2Integer, value: *mut fmi2Real
+    );
+    fmi2CancelStep();
+}

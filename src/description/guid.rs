@@ -1,0 +1,115 @@
+//! The GUID: a hash, by the compiler, of what the description says.
+
+use super::{LOG_CATEGORIES, MODEL_IDENTIFIER};
+use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variable};
+
+/// The GUID that ties the binary to its description. It follows from the table
+/// of variables, the log categories and the version: a changed table cannot
+/// keep it, and the same table gives the same one on each build.
+pub const GUID: &str = match std::str::from_utf8(&TEXT) {
+    Ok(text) => text,
+    Err(_) => panic!("a GUID is ASCII"),
+};
+
+/// `{8-4-4-4-12}` hexadecimal digits.
+const TEXT: [u8; 38] = {
+    let hash = table();
+    let mut text = *b"{00000000-0000-0000-0000-000000000000}";
+    let (mut place, mut digit) = (1, 0);
+    while digit < 32 {
+        if text[place] == b'-' {
+            place += 1;
+        }
+        text[place] = b"0123456789abcdef"[(hash >> (124 - 4 * digit)) as usize & 0xf];
+        place += 1;
+        digit += 1;
+    }
+    text
+};
+
+const fn table() -> u128 {
+    let mut hash = Hash::new()
+        .text(MODEL_IDENTIFIER)
+        .text(env!("CARGO_PKG_VERSION"));
+    let mut i = 0;
+    while i < VARIABLES.len() {
+        hash = hash.variable(&VARIABLES[i]);
+        i += 1;
+    }
+    let mut i = 0;
+    while i < LOG_CATEGORIES.len() {
+        hash = hash.text(LOG_CATEGORIES[i].0).text(LOG_CATEGORIES[i].1);
+        i += 1;
+    }
+    let mut i = 0;
+    while i < ON_PULL_IN.len() {
+        hash = hash.text(ON_PULL_IN[i].0).text(ON_PULL_IN[i].1);
+        i += 1;
+    }
+    hash.0
+}
+
+/// FNV-1a of 128 bits (G. Fowler, L. C. Noll, K.-P. Vo).
+struct Hash(u128);
+
+impl Hash {
+    const fn new() -> Hash {
+        Hash(0x6c62272e07bb014262b821756295c58d)
+    }
+
+    const fn byte(self, byte: u8) -> Hash {
+        Hash((self.0 ^ byte as u128).wrapping_mul(0x0000000001000000000000000000013b))
+    }
+
+    const fn bytes(mut self, bytes: &[u8]) -> Hash {
+        let mut i = 0;
+        while i < bytes.len() {
+            self = self.byte(bytes[i]);
+            i += 1;
+        }
+        self
+    }
+
+    /// A text and its end.
+    const fn text(self, text: &str) -> Hash {
+        self.bytes(text.as_bytes()).byte(0)
+    }
+
+    const fn number(self, number: Option<f64>) -> Hash {
+        match number {
+            Some(value) => self.byte(1).bytes(&value.to_bits().to_le_bytes()),
+            None => self.byte(0),
+        }
+    }
+
+    const fn variable(self, variable: &Variable) -> Hash {
+        let hash = self
+            .text(variable.name)
+            .text(variable.description)
+            .byte(variable.causality as u8)
+            .byte(variable.variability as u8)
+            .number(variable.start);
+        let hash = match variable.kind {
+            Kind::Real { min, max, nominal } => hash
+                .byte(1)
+                .number(Some(min))
+                .number(Some(max))
+                .number(Some(nominal)),
+            Kind::Boolean => hash.byte(2),
+            Kind::Enumeration => hash.byte(3),
+        };
+        let mut hash = match variable.access {
+            Access::Input { .. } => return hash.byte(1),
+            Access::Setting { .. } => return hash.byte(2),
+            Access::Result { .. } => hash.byte(3),
+        };
+        if let Access::Result { from, .. } = variable.access {
+            let mut i = 0;
+            while i < from.len() {
+                hash = hash.text(from[i]);
+                i += 1;
+            }
+        }
+        hash
+    }
+}

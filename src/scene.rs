@@ -1,0 +1,67 @@
+//! A scene: everything that a host sets before and between communication steps.
+
+use crate::actuator::drive::{Harmonic, Polynomial};
+use crate::actuator::{Coefficients, Drive, Motion, Parameters};
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::limits::Limits;
+
+/// What the actuator does where the motion reaches a limit of the stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OnPullIn {
+    /// It stays at the limit, and communication steps go on.
+    Hold,
+    /// It asks the host to end the simulation.
+    Terminate,
+}
+
+/// One scenario: actuator, start, limits and drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scene {
+    /// The actuator.
+    pub parameters: Parameters,
+    /// Stretch and stretch rate at the start time (Eq. 17).
+    pub start: State,
+    /// The stretches between which the motion is followed.
+    pub limits: Limits,
+    /// What happens at a limit.
+    pub on_pull_in: OnPullIn,
+    /// Voltage and prestress.
+    pub drive: Drive,
+}
+
+impl Scene {
+    /// A scene with every number 0, to be filled in.
+    pub(crate) const BLANK: Scene = Scene {
+        parameters: Parameters {
+            aspect: 0.0,
+            surface_energy: 0.0,
+            surface_tension: 0.0,
+            surface_elasticity: 0.0,
+        },
+        start: State {
+            position: 0.0,
+            rate: 0.0,
+        },
+        limits: Limits {
+            lower: 0.0,
+            upper: 0.0,
+        },
+        on_pull_in: OnPullIn::Hold,
+        drive: Drive {
+            since: Double::ZERO,
+            voltage: Polynomial::constant(0.0),
+            prestress: Polynomial::constant(0.0),
+            harmonic: Harmonic::OFF,
+        },
+    };
+
+    /// The motion that this scene describes.
+    #[must_use]
+    pub fn motion(&self) -> Motion {
+        Motion {
+            coefficients: Coefficients::fold(&self.parameters),
+            drive: self.drive,
+        }
+    }
+}

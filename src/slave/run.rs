@@ -1,0 +1,166 @@
+//! The motion of an initialized actuator from communication point to
+//! communication point.
+
+use super::{Event, Fault};
+use crate::actuator::Motion;
+use crate::scene::{OnPullIn, Scene};
+use crate::solver::double::Double;
+use crate::solver::limits::Limit;
+use crate::solver::trajectory::{Failure, Progress, Trajectory};
+use crate::view::Collapse;
+
+/// A communication point may be off by this part of the time: hosts sum up
+/// their steps in different ways, up to 1e7 of them.
+const TIME_ROUNDING: f64 = 1e-9;
+
+/// A communication point may also be off by this part of the step.
+const STEP_ROUNDING: f64 = 1e-6;
+
+/// A running simulation.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// Start time and all steps summed up.
+    time: Double,
+    motion: Motion,
+    trajectory: Trajectory,
+    collapse: Option<Collapse>,
+    /// The scene has changed since `motion` was made of it.
+    stale: bool,
+}
+
+impl Run {
+    pub(super) fn new(scene: &Scene, time: Double, tolerance: f64) -> Run {
+        Run {
+            time,
+            motion: scene.motion(),
+            trajectory: Trajectory::new(scene.start, time, scene.limits, tolerance),
+            collapse: None,
+            stale: false,
+        }
+    }
+
+    /// The present time of the model.
+    #[must_use]
+    pub fn time(&self) -> Double {
+        self.time
+    }
+
+    /// The motion so far.
+    #[must_use]
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+
+    /// Whether and when the actuator has collapsed.
+    #[must_use]
+    pub fn collapse(&self) -> Option<Collapse> {
+        self.collapse
+    }
+
+    pub(super) fn scene_changed(&mut self) {
+        self.stale = true;
+    }
+
+    /// Refuses a step that cannot be meant.
+    pub(super) fn check_step(
+        &self,
+        current: f64,
+        step: f64,
+        stop_time: Option<f64>,
+    ) -> Result<(), Fault> {
+        if !(step.is_finite() && step > 0.0) {
+            return Err(Fault::error(format!(
+                "the communication step {step} is not a finite number above 0"
+            )));
+        }
+        let time = self.time.value();
+        let rounding = TIME_ROUNDING * time.abs() + STEP_ROUNDING * step;
+        let off = (current - time).abs();
+        if !(off <= rounding) {
+            return Err(Fault::error(format!(
+                "the current communication point {current} is not the time {time} \
+                 at which the last step ended"
+            )));
+        }
+        if let Some(stop) = stop_time
+            && time + step > stop + rounding + STEP_ROUNDING * step
+        {
+            return Err(Fault::error(format!(
+                "the step of {step} from {time} goes beyond the stop time {stop} \
+                 given to fmi2SetupExperiment"
+            )));
+        }
+        Ok(())
+    }
+
+    /// Follows the motion for one step that has been checked.
+    pub(super) fn step(&mut self, scene: &Scene, step: f64) -> Result<Option<Event>, Fault> {
+        if self.collapse.is_some() {
+            self.time = self.time.add(Double::new(step));
+            return Ok(None);
+        }
+        if self.stale {
+            self.motion = scene.motion();
+            self.trajectory.restart(self.time);
+            self.stale = false;
+        }
+        match self.trajectory.advance(&self.motion, step) {
+            Ok(Progress::Whole) => {
+                self.time = self.time.add(Double::new(step));
+                Ok(None)
+            }
+            Ok(Progress::Stopped { limit, after }) => {
+                let at = self.time.add(Double::new(after));
+                self.collapse = Some(Collapse { limit, time: at });
+                let text = describe_collapse(scene, limit, at.value());
+                match scene.on_pull_in {
+                    OnPullIn::Hold => {
+                        self.time = self.time.add(Double::new(step));
+                        Ok(Some(Event {
+                            warning: false,
+                            text: format!("{text}; it stays there (on_pull_in = hold)"),
+                        }))
+                    }
+                    OnPullIn::Terminate => {
+                        self.time = at;
+                        Err(Fault::discard(format!(
+                            "{text}; the simulation should end here (on_pull_in = terminate)"
+                        )))
+                    }
+                }
+            }
+            Err(failure) => Err(self.fail(failure)),
+        }
+    }
+
+    fn fail(&mut self, failure: Failure) -> Fault {
+        let (after, why) = match failure {
+            Failure::SubstepTooShort { length, after } => (
+                after,
+                format!("a substep of {length} is too short to go on"),
+            ),
+            Failure::TooManySubsteps { most, after } => (
+                after,
+                format!("the step needs more than {most} substeps; use shorter steps"),
+            ),
+        };
+        self.time = self.time.add(Double::new(after));
+        let (time, stretch) = (self.time.value(), self.trajectory.position());
+        Fault::discard(format!(
+            "the integration stopped at time {time} and stretch {stretch}: {why}"
+        ))
+    }
+}
+
+fn describe_collapse(scene: &Scene, limit: Limit, time: f64) -> String {
+    match limit {
+        Limit::Upper => format!(
+            "the actuator was pulled in: at time {time} its stretch reached lambda_max = {}",
+            scene.limits.upper
+        ),
+        Limit::Lower => format!(
+            "the actuator collapsed: at time {time} its stretch came down to lambda_min = {}",
+            scene.limits.lower
+        ),
+    }
+}

@@ -1,0 +1,153 @@
+//! Getting and setting variables by their value references.
+
+use super::phase::Phase;
+use super::{Fault, Instance};
+use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variability, Variable};
+
+/// The types of FMI under which a variable can be got and set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Type {
+    /// `fmi2Real`.
+    Real,
+    /// `fmi2Integer`, also used for enumerations.
+    Integer,
+    /// `fmi2Boolean`.
+    Boolean,
+    /// `fmi2String`.
+    String,
+}
+
+impl Type {
+    fn name(self) -> &'static str {
+        match self {
+            Type::Real => "Real",
+            Type::Integer => "Integer or Enumeration",
+            Type::Boolean => "Boolean",
+            Type::String => "String",
+        }
+    }
+
+    fn is_of(self, variable: &Variable) -> bool {
+        match variable.kind {
+            Kind::Real { .. } => self == Type::Real,
+            Kind::Boolean => self == Type::Boolean,
+            Kind::Enumeration => self == Type::Integer,
+        }
+    }
+}
+
+/// The variable of a value reference.
+pub(super) fn row(reference: u32) -> Result<&'static Variable, Fault> {
+    VARIABLES.get(reference as usize).ok_or_else(|| {
+        Fault::error(format!(
+            "there is no variable with value reference {reference}; the largest is {}",
+            VARIABLES.len() - 1
+        ))
+    })
+}
+
+fn typed(reference: u32, wanted: Type) -> Result<&'static Variable, Fault> {
+    let variable = row(reference)?;
+    if wanted.is_of(variable) {
+        return Ok(variable);
+    }
+    Err(Fault::error(format!(
+        "{} (value reference {reference}) is not of type {}",
+        variable.name,
+        wanted.name()
+    )))
+}
+
+impl Instance {
+    /// Reads the variables of type `wanted` with these value references, each
+    /// passed to `store` with its place. Booleans are 0 or 1, enumerations
+    /// their item's number.
+    ///
+    /// # Errors
+    /// Error for an unknown reference or another type; then nothing is stored.
+    pub fn get(
+        &self,
+        wanted: Type,
+        references: &[u32],
+        mut store: impl FnMut(usize, f64),
+    ) -> Result<(), Fault> {
+        for &reference in references {
+            typed(reference, wanted)?;
+        }
+        let view = self.view();
+        for (place, &reference) in references.iter().enumerate() {
+            let value = match VARIABLES[reference as usize].access {
+                Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
+                Access::Setting { get, .. } => get(view.scene),
+            };
+            store(place, value);
+        }
+        Ok(())
+    }
+
+    /// Sets the variables of type `wanted` with these value references.
+    ///
+    /// # Errors
+    /// Error for an unknown reference, another type, a variable that cannot be
+    /// set or not in this phase, or a value outside the limits; then nothing
+    /// is set.
+    pub fn set(
+        &mut self,
+        wanted: Type,
+        references: &[u32],
+        value: impl Fn(usize) -> f64,
+    ) -> Result<(), Fault> {
+        for (place, &reference) in references.iter().enumerate() {
+            let variable = typed(reference, wanted)?;
+            self.check_settable(variable)?;
+            check_value(variable, value(place))?;
+        }
+        self.bring_drive_up_to_date();
+        for (place, &reference) in references.iter().enumerate() {
+            let value = value(place);
+            let before = self.scene;
+            match VARIABLES[reference as usize].access {
+                Access::Input { of, .. } => {
+                    let input = of(&mut self.scene);
+                    input.set_value(value);
+                    // Derivatives belong to the value they were set with.
+                    if self.fresh_derivatives & (1 << reference) == 0 {
+                        input.clear_derivatives();
+                    }
+                }
+                Access::Setting { set, .. } => set(&mut self.scene, value),
+                Access::Result { .. } => {}
+            }
+            if self.scene != before {
+                self.changed();
+            }
+        }
+        Ok(())
+    }
+
+    fn check_settable(&self, variable: &Variable) -> Result<(), Fault> {
+        let name = variable.name;
+        if matches!(variable.access, Access::Result { .. }) {
+            return Err(Fault::error(format!(
+                "{name} is a result of the model and cannot be set"
+            )));
+        }
+        if variable.variability == Variability::Fixed && self.phase == Phase::StepComplete {
+            return Err(Fault::error(format!(
+                "{name} is fixed after initialization; set it before, or call fmi2Reset first"
+            )));
+        }
+        Ok(())
+    }
+}
+
+fn check_value(variable: &Variable, value: f64) -> Result<(), Fault> {
+    let items = ON_PULL_IN.len();
+    if variable.kind == Kind::Enumeration && !(1.0..=items as f64).contains(&value) {
+        return Err(Fault::error(format!(
+            "{} = {value} is not an item of its enumeration; set 1 to {items}",
+            variable.name
+        )));
+    }
+    variable.check(value).map_err(Fault::error)
+}

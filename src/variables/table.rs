@@ -1,0 +1,347 @@
+//! The rows of the table.
+
+use super::{Access, Causality, Kind, Variability, Variable, checked};
+use crate::actuator::drive::Polynomial;
+use crate::scene::{OnPullIn, Scene};
+use crate::view::View;
+
+use Causality::{Local, Output};
+use Variability::{Fixed, Tunable};
+
+/// All variables, in the order of their value references.
+pub static VARIABLES: [Variable; COUNT] = checked([
+    input(
+        "phi",
+        "nondimensional voltage, phi*sqrt(eps/mu)/H",
+        real(-1e3, 1e3, 1.0),
+        |view| view.voltage(),
+        |scene| &mut scene.drive.voltage,
+    ),
+    input(
+        "S",
+        "nondimensional prestress, P/(mu*H*L)",
+        real(-1e3, 1e3, 1.0),
+        |view| view.prestress(),
+        |scene| &mut scene.drive.prestress,
+    ),
+    parameter(
+        "c",
+        "squared ratio of side to thickness, L^2/H^2",
+        Tunable,
+        real(1e-3, 1e12, 100.0),
+        100.0,
+        |scene| scene.parameters.aspect,
+        |scene, value| scene.parameters.aspect = value,
+    ),
+    parameter(
+        "gamma_s",
+        "surface energy density over mu*H",
+        Tunable,
+        real(0.0, 100.0, 0.1),
+        0.0,
+        |scene| scene.parameters.surface_energy,
+        |scene, value| scene.parameters.surface_energy = value,
+    ),
+    parameter(
+        "tau_s",
+        "surface tension over mu*H",
+        Tunable,
+        real(0.0, 100.0, 0.1),
+        0.0,
+        |scene| scene.parameters.surface_tension,
+        |scene, value| scene.parameters.surface_tension = value,
+    ),
+    parameter(
+        "E_s",
+        "surface elasticity over mu*H",
+        Tunable,
+        real(0.0, 100.0, 0.1),
+        0.0,
+        |scene| scene.parameters.surface_elasticity,
+        |scene, value| scene.parameters.surface_elasticity = value,
+    ),
+    parameter(
+        "lambda_start",
+        "stretch at the start time",
+        Fixed,
+        real(1e-3, 1e6, 1.0),
+        1.0,
+        |scene| scene.start.position,
+        |scene, value| scene.start.position = value,
+    ),
+    parameter(
+        "lambda_dot_start",
+        "stretch rate at the start time",
+        Fixed,
+        real(-1e3, 1e3, 0.1),
+        0.0,
+        |scene| scene.start.rate,
+        |scene, value| scene.start.rate = value,
+    ),
+    parameter(
+        "phi_ac",
+        "amplitude of the built-in voltage phi_ac*sin(omega_ac*t + phase_ac), added to phi",
+        Tunable,
+        real(-1e3, 1e3, 1.0),
+        0.0,
+        |scene| scene.drive.harmonic.amplitude,
+        |scene, value| scene.drive.harmonic.amplitude = value,
+    ),
+    parameter(
+        "omega_ac",
+        "angular frequency of the built-in voltage, radians per unit of time",
+        Tunable,
+        real(0.0, 1e3, 0.1),
+        0.0,
+        |scene| scene.drive.harmonic.frequency,
+        |scene, value| scene.drive.harmonic.frequency = value,
+    ),
+    parameter(
+        "phase_ac",
+        "phase of the built-in voltage at t = 0, radians",
+        Tunable,
+        real(-1e3, 1e3, 1.0),
+        0.0,
+        |scene| scene.drive.harmonic.phase,
+        |scene, value| scene.drive.harmonic.phase = value,
+    ),
+    parameter(
+        "lambda_min",
+        "stretch at which the contracting actuator has collapsed",
+        Fixed,
+        real(1e-3, 0.9, 0.1),
+        0.05,
+        |scene| scene.limits.lower,
+        |scene, value| scene.limits.lower = value,
+    ),
+    parameter(
+        "lambda_max",
+        "stretch at which the expanding actuator has been pulled in",
+        Fixed,
+        real(1.1, 1e6, 10.0),
+        10.0,
+        |scene| scene.limits.upper,
+        |scene, value| scene.limits.upper = value,
+    ),
+    parameter(
+        "on_pull_in",
+        "what happens at lambda_min or lambda_max",
+        Fixed,
+        Kind::Enumeration,
+        1.0,
+        |scene| match scene.on_pull_in {
+            OnPullIn::Hold => 1.0,
+            OnPullIn::Terminate => 2.0,
+        },
+        |scene, value| {
+            scene.on_pull_in = if value == 1.0 {
+                OnPullIn::Hold
+            } else {
+                OnPullIn::Terminate
+            };
+        },
+    ),
+    result(
+        "lambda",
+        "in-plane stretch",
+        Output,
+        real(1e-3, 1e6, 1.0),
+        |view| view.stretch(),
+        &["lambda_start"],
+    ),
+    result(
+        "lambda3",
+        "thickness stretch, 1/lambda^2",
+        Output,
+        real(1e-12, 1e6, 1.0),
+        |view| view.thickness_stretch(),
+        &["lambda_start"],
+    ),
+    result(
+        "pulled_in",
+        "whether the stretch has reached lambda_min or lambda_max",
+        Output,
+        Kind::Boolean,
+        |view| f64::from(u8::from(view.collapse.is_some())),
+        &[],
+    ),
+    result(
+        "lambda_dot",
+        "rate of lambda",
+        Local,
+        unlimited(0.1),
+        |view| view.stretch_rate(),
+        &["lambda_dot_start"],
+    ),
+    result(
+        "lambda3_dot",
+        "rate of lambda3",
+        Local,
+        unlimited(0.1),
+        |view| view.thickness_stretch_rate(),
+        &["lambda_start", "lambda_dot_start"],
+    ),
+    result(
+        "lambda_ddot",
+        "second derivative of lambda by the equation of motion",
+        Local,
+        unlimited(0.01),
+        |view| view.stretch_acceleration(),
+        &[],
+    ),
+    result(
+        "phi_total",
+        "phi with the built-in voltage added",
+        Local,
+        real(-2e3, 2e3, 1.0),
+        |view| view.total_voltage(),
+        &[],
+    ),
+    result(
+        "electric_field",
+        "true electric field, phi_total*lambda^2",
+        Local,
+        real(-2e15, 2e15, 1.0),
+        |view| view.electric_field(),
+        &[],
+    ),
+    result(
+        "hamiltonian",
+        "Hamiltonian, constant while phi and S are; 0 at rest at lambda = 1",
+        Local,
+        unlimited(1.0),
+        |view| view.energy(),
+        &[],
+    ),
+    result(
+        "phi_pull_in",
+        "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf where there is none",
+        Local,
+        positive(),
+        |view| {
+            view.dynamic_threshold()
+                .map_or(f64::INFINITY, |t| t.voltage)
+        },
+        &[],
+    ),
+    result(
+        "lambda3_pull_in",
+        "thickness stretch at the dynamic pull-in voltage; 0 where there is none",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| {
+            view.dynamic_threshold()
+                .map_or(0.0, |t| t.thickness_stretch)
+        },
+        &[],
+    ),
+    result(
+        "phi_pull_in_static",
+        "static pull-in voltage for the present S; +inf where there is none",
+        Local,
+        positive(),
+        |view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage),
+        &[],
+    ),
+    result(
+        "lambda3_pull_in_static",
+        "thickness stretch at the static pull-in voltage; 0 where there is none",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| view.static_threshold().map_or(0.0, |t| t.thickness_stretch),
+        &[],
+    ),
+    result(
+        "pull_in_margin",
+        "by how much the voltage may grow until dynamic pull-in; negative beyond, +inf where there is none",
+        Local,
+        unlimited(1.0),
+        |view| view.pull_in_margin(),
+        &[],
+    ),
+    result(
+        "pull_in_time",
+        "time at which pulled_in became true; +inf until then",
+        Local,
+        unlimited(1.0),
+        |view| view.collapse.map_or(f64::INFINITY, |c| c.time.value()),
+        &[],
+    ),
+]);
+
+const COUNT: usize = 29;
+
+const fn real(min: f64, max: f64, nominal: f64) -> Kind {
+    Kind::Real { min, max, nominal }
+}
+
+/// A result that is not negative and has no largest value.
+const fn positive() -> Kind {
+    real(0.0, f64::MAX, 1.0)
+}
+
+/// A result without limits.
+const fn unlimited(nominal: f64) -> Kind {
+    real(f64::MIN, f64::MAX, nominal)
+}
+
+const fn input(
+    name: &'static str,
+    description: &'static str,
+    kind: Kind,
+    get: fn(&View) -> f64,
+    of: fn(&mut Scene) -> &mut Polynomial,
+) -> Variable {
+    Variable {
+        name,
+        description,
+        causality: Causality::Input,
+        variability: Variability::Continuous,
+        kind,
+        start: Some(0.0),
+        access: Access::Input { get, of },
+    }
+}
+
+const fn parameter(
+    name: &'static str,
+    description: &'static str,
+    variability: Variability,
+    kind: Kind,
+    start: f64,
+    get: fn(&Scene) -> f64,
+    set: fn(&mut Scene, f64),
+) -> Variable {
+    Variable {
+        name,
+        description,
+        causality: Causality::Parameter,
+        variability,
+        kind,
+        start: Some(start),
+        access: Access::Setting { get, set },
+    }
+}
+
+const fn result(
+    name: &'static str,
+    description: &'static str,
+    causality: Causality,
+    kind: Kind,
+    get: fn(&View) -> f64,
+    from: &'static [&'static str],
+) -> Variable {
+    let variability = match kind {
+        Kind::Boolean | Kind::Enumeration => Variability::Discrete,
+        Kind::Real { .. } => Variability::Continuous,
+    };
+    Variable {
+        name,
+        description,
+        causality,
+        variability,
+        kind,
+        start: None,
+        access: Access::Result { get, from },
+    }
+}
