@@ -1,0 +1,72 @@
+# Everything from a fresh checkout to the packed FMU; `make help` lists the targets.
+# Needs Rust, Python 3.11 or later with pip, a C compiler and make.
+
+PYTHON ?= python3
+VENV := .venv
+PYTHON_IN_VENV := $(VENV)/bin/python
+INSTALLED := $(VENV)/installed
+
+# The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
+# needs zig to link. Expanded when a recipe runs, hence after the set-up.
+LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
+BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include)
+ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
+ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG,$(name)='$($(name))')
+CARGO = env $(ENVIRONMENT) cargo
+
+heading = @printf '\n==> %s\n' "$(1)"
+
+.DELETE_ON_ERROR:
+.NOTPARALLEL:
+.PHONY: help run fmu test env clean
+
+help:
+	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
+	@echo 'make test   run every test'
+	@echo 'make fmu    build and pack the FMU only'
+	@echo 'make env    print what plain cargo commands need: eval "$$(make -s env)"'
+	@echo 'make clean  remove target and .venv'
+	@echo 'PYTHON=...  the Python to use, 3.11 or later (default: python3)'
+
+run: fmu
+	$(call heading,Demonstration)
+	@$(PYTHON_IN_VENV) studies/demonstration.py
+
+fmu: $(INSTALLED)
+	$(call heading,FMU)
+	@$(CARGO) fmu
+
+test: $(INSTALLED)
+	$(call heading,Format)
+	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
+	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
+	$(call heading,Lints)
+	@if cargo clippy --version >/dev/null 2>&1; then \
+	$(CARGO) clippy --workspace --all-targets -- -D warnings; \
+	else echo 'skipped: this Rust has no clippy (rustup component add clippy)'; fi
+	$(call heading,FMU)
+	@$(CARGO) fmu
+	$(call heading,Rust tests)
+	@$(CARGO) test --workspace
+	$(call heading,FMPy tests)
+	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
+
+env: $(INSTALLED)
+	@$(info export $(ENVIRONMENT)):
+
+clean:
+	rm -rf target $(VENV)
+
+# Python without the module ensurepip (Debian without python3-venv) makes an environment
+# without pip; the pip of $(PYTHON) serves either way.
+$(INSTALLED): requirements.txt
+	$(call heading,Python packages)
+	@command -v cargo >/dev/null || \
+	{ echo 'error: cargo is missing; install Rust from https://rustup.rs'; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	{ echo 'error: $(PYTHON) is no Python 3.11 or later; install one and run make PYTHON=...'; exit 1; }
+	@$(PYTHON) -m pip --version >/dev/null || \
+	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
+	$(PYTHON) -m venv --clear --without-pip $(VENV)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
+	@touch $@
