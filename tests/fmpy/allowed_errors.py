@@ -1,0 +1,51 @@
+"""Every error that the FMPy tests allow, with its reason. Absolute and nondimensional unless it says relative."""
+
+TOLERANCE = 1e-12
+"""Relative tolerance asked of the integrator wherever a reference has more digits than the default serves."""
+
+TRAJECTORY = 1e-9
+"""λ and dλ/dt against the multiprecision trajectories: the delivery's bound, at every communication step."""
+
+TRAJECTORY_DEFAULT = 1e-8
+"""The same over 500 time units at the default tolerance of 1e-10: errors of a hundred oscillation steps add up."""
+
+ORBIT_RELATIVE = 1e-9
+"""Period and turning stretch, relative: the delivery's bound."""
+
+RETURN = 1e-11
+"""Distance from λ = 1 and from zero rate after one exact period: ten times the tolerance asked for."""
+
+TURNING_RATE = 1e-11
+"""Stretch rate left at half the exact period, likewise."""
+
+ENERGY = 1e-11
+"""Drift of the Hamiltonian at constant inputs, whose terms are of order 0.1: the delivery's bound."""
+
+PULL_IN_RESOLUTION = 1e-10
+PULL_IN_BY_MOTION = 1e-10
+"""Voltage at which the motion changes sides: the bisection's resolution. The delivery asks for 1e-6."""
+
+THRESHOLD_RELATIVE = 1e-12
+"""Thresholds that the FMU computes itself, relative: the delivery's bound."""
+
+CUSP_OFFSET = 1e-9
+"""Relative distance from E* at which a fold must exist below and must not above. E* is known to 12 digits."""
+
+CUSP_STRETCH = 1e-4
+"""Thickness stretch of a fold that close to its cusp: it leaves the cusp's like the root of the offset, 3e-5."""
+
+CUSP_VOLTAGE = 1e-9
+"""φ² there: it leaves the cusp's in proportion to the offset."""
+
+EQUILIBRIUM = 1e-14
+"""d²λ/dt² at the fold's stretch: forces of order 1, rounded, over the inertia c = 100."""
+
+AMPLITUDE = 1e-11
+"""Amplitude over thousands of time units: every extreme is a root of the interpolated rate (turning_points.py,
+3e-12 at the step used), the rest is integration error."""
+
+ESCAPE = 1e-11
+"""Instant of escape, up to 68: time at the limit plus the quadrature from there to infinity."""
+
+SAME_MOTION = 1e-11
+"""Two runs over at most 100 time units that solve the same problem through different calls."""

@@ -1,0 +1,73 @@
+"""What the FMPy tests share: the packed FMU, and the studies' runner that they drive it with."""
+
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(REPOSITORY / "studies"))
+
+import actuator_fmu  # noqa: E402
+from actuator_fmu import DEFAULT_FMU, ActuatorFmu  # noqa: E402
+
+
+def pytest_addoption(parser):
+    parser.addoption("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU to test (default: %(default)s)")
+
+
+@pytest.fixture(scope="session")
+def fmu_path(request) -> Path:
+    """The packed FMU; a test that needs it fails where there is none."""
+    path = request.config.getoption("--fmu")
+    if not path.is_file():
+        pytest.fail(f"no FMU at {path}: build and pack it first (make fmu)", pytrace=False)
+    return path
+
+
+@pytest.fixture(scope="session")
+def description(fmu_path):
+    """FMPy's reading of the model description."""
+    return fmpy.read_model_description(str(fmu_path))
+
+
+@pytest.fixture(scope="session")
+def session_actuator(fmu_path):
+    with ActuatorFmu(fmu_path) as actuator:
+        yield actuator
+
+
+@pytest.fixture
+def actuator(session_actuator) -> ActuatorFmu:
+    """The runner; `start` resets it, so that tests do not see each other."""
+    return session_actuator
+
+
+@pytest.fixture(scope="session")
+def unpacked(fmu_path, tmp_path_factory) -> str:
+    """A folder with the unpacked FMU."""
+    return fmpy.extract(str(fmu_path), unzipdir=str(tmp_path_factory.mktemp("fmu")))
+
+
+@pytest.fixture
+def instantiate(unpacked, description):
+    """A function that makes a bare FMPy instance, its log messages in the attribute `log`; freed after the test."""
+    made = []
+
+    def make():
+        log = []
+        instance = actuator_fmu.instantiate(unpacked, description, log)
+        instance.log = log
+        made.append(instance)
+        return instance
+
+    yield make
+    for instance in made:
+        instance.freeInstance()
+
+
+@pytest.fixture(scope="session")
+def reference_of(description):
+    """Value reference by variable name."""
+    return {variable.name: variable.valueReference for variable in description.modelVariables}

@@ -1,0 +1,65 @@
+"""The built-in harmonic drive."""
+
+import math
+
+import allowed_errors as allowed
+import numpy as np
+import pytest
+import references
+import turning_points
+
+
+@pytest.mark.parametrize("reference", references.driven_amplitudes(), ids=lambda r: f"omega={r.omega_ac:g}")
+def test_amplitude_at_a_given_frequency(actuator, reference):
+    response = actuator.run(
+        reference.scene(),
+        stop_time=reference.stop_time,
+        communication_step=0.125,
+        outputs=turning_points.OUTPUTS,
+        tolerance=allowed.TOLERANCE,
+    )
+    assert abs(turning_points.thickness_amplitude(response) - reference.amplitude) <= allowed.AMPLITUDE
+
+
+def test_total_voltage_is_input_plus_drive(actuator):
+    response = actuator.run(
+        {"phi": 0.1, "phi_ac": 0.3, "omega_ac": 0.7, "phase_ac": 0.4},
+        stop_time=20.0,
+        communication_step=0.37,
+        outputs=["phi_total"],
+    )
+    expected = 0.1 + 0.3 * np.sin(0.7 * response["time"] + 0.4)
+    assert np.abs(response["phi_total"] - expected).max() <= 1e-14
+
+
+def test_a_drive_of_frequency_zero_is_a_constant_voltage(actuator):
+    surface = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
+    run = dict(stop_time=100.0, communication_step=1.3, tolerance=allowed.TOLERANCE)
+    driven = actuator.run({**surface, "phi": 0.2, "phi_ac": 0.8, "phase_ac": math.asin(0.5)}, **run)
+    constant = actuator.run({**surface, "phi": 0.6}, **run)
+    assert np.abs(driven["lambda"] - constant["lambda"]).max() <= allowed.SAME_MOTION
+
+
+def test_the_sign_of_the_voltage_does_not_matter(actuator):
+    """The voltage enters as φ²: half a period of phase changes nothing."""
+    run = dict(stop_time=100.0, communication_step=1.3, tolerance=allowed.TOLERANCE)
+    one = actuator.run({"phi_ac": 0.3, "omega_ac": 0.1471}, **run)
+    other = actuator.run({"phi_ac": 0.3, "omega_ac": 0.1471, "phase_ac": math.pi}, **run)
+    assert np.ptp(one["lambda"]) > 0.01
+    assert np.abs(one["lambda"] - other["lambda"]).max() <= allowed.SAME_MOTION
+
+
+def test_an_input_that_is_a_function_of_time_approaches_the_drive(actuator):
+    """Held inputs lag: the error of a held sine falls in proportion to the communication step."""
+    run = dict(stop_time=40.0, tolerance=allowed.TOLERANCE)
+    exact = actuator.run({"phi_ac": 0.3, "omega_ac": 0.1471}, communication_step=40.0, **run)["lambda"][-1]
+
+    def held_sine(time):
+        return 0.3 * math.sin(0.1471 * time)
+
+    errors = [
+        actuator.run({"phi": held_sine}, communication_step=step, **run)["lambda"][-1] - exact
+        for step in (0.02, 0.01)
+    ]
+    assert abs(errors[1]) < 1e-4
+    assert errors[0] / errors[1] == pytest.approx(2, rel=0.05)

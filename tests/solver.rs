@@ -1,0 +1,318 @@
+//! The integrator on the motion of the actuator, against multiprecision
+//! references and against what must hold exactly.
+
+use dielectric_elastomer_actuator::actuator::drive::Harmonic;
+use dielectric_elastomer_actuator::actuator::motion::{Load, energy};
+use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
+use dielectric_elastomer_actuator::solver::State;
+use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
+use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Trajectory};
+use proptest::prelude::*;
+
+const REST: State = State {
+    position: 1.0,
+    rate: 0.0,
+};
+const LIMITS: Limits = Limits {
+    lower: 0.05,
+    upper: 10.0,
+};
+
+fn coefficients(aspect: f64, [gamma, tau, elasticity]: [f64; 3]) -> Coefficients {
+    Coefficients::fold(&Parameters {
+        aspect,
+        surface_energy: gamma,
+        surface_tension: tau,
+        surface_elasticity: elasticity,
+    })
+}
+
+fn direct(surface: [f64; 3], voltage: f64, prestress: f64) -> Motion {
+    Motion {
+        coefficients: coefficients(100.0, surface),
+        drive: Drive::constant(voltage, prestress),
+    }
+}
+
+fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Motion {
+    let mut motion = direct(surface, 0.0, 0.0);
+    motion.drive.harmonic = Harmonic {
+        amplitude,
+        frequency,
+        phase: 0.0,
+    };
+    motion
+}
+
+fn from_rest(tolerance: f64) -> Trajectory {
+    Trajectory::new(REST, Double::ZERO, LIMITS, tolerance)
+}
+
+/// Follows the motion to `time` in steps of `step` and a last shorter one.
+fn follow(trajectory: &mut Trajectory, motion: &Motion, time: f64, step: f64) {
+    let whole = (time / step).floor();
+    for _ in 0..whole as u64 {
+        advance(trajectory, motion, step);
+    }
+    let rest = time - whole * step;
+    if rest > 1e-9 * step {
+        advance(trajectory, motion, rest);
+    }
+}
+
+fn advance(trajectory: &mut Trajectory, motion: &Motion, step: f64) {
+    assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
+}
+
+/// Rows t, λ, dλ/dt of a reference with 30 digits.
+fn reference(name: &str) -> Vec<[f64; 3]> {
+    let path = format!(
+        "{}/tests/reference/case_{name}.csv",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let text = std::fs::read_to_string(path).expect("the reference is checked in");
+    let row = |line: &str| -> [f64; 3] {
+        let cells: Vec<f64> = line
+            .split(',')
+            .map(|c| c.parse().expect("a number"))
+            .collect();
+        cells.try_into().expect("three columns")
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+fn worst_error(name: &str, motion: &Motion, tolerance: f64, step: f64) -> f64 {
+    let rows = reference(name);
+    let mut trajectory = from_rest(tolerance);
+    let mut worst = 0.0_f64;
+    for pair in rows.windows(2) {
+        let [[before, ..], [time, stretch, rate]] = [pair[0], pair[1]];
+        follow(&mut trajectory, motion, time - before, step);
+        worst = worst
+            .max((trajectory.position() - stretch).abs())
+            .max((trajectory.rate() - rate).abs());
+    }
+    worst
+}
+
+const SURFACE: [f64; 3] = [0.05, 0.05, 0.2];
+
+/// Achieved error against the tolerance asked for, at times that are not ends
+/// of substeps (steps of 0.37) and in long steps.
+#[test]
+fn the_error_stays_within_ten_times_the_tolerance() {
+    let cases = [
+        ("a", direct(SURFACE, 0.6, 0.0)),
+        ("b", direct(SURFACE, 0.6, 0.5)),
+        ("d", alternating([0.1, 0.05, 0.2], 0.3, 0.1471)),
+    ];
+    for (name, motion) in &cases {
+        for exponent in 4..=13 {
+            let tolerance = 10_f64.powi(-exponent);
+            for step in [0.37, 25.0] {
+                let error = worst_error(name, motion, tolerance, step);
+                assert!(
+                    error <= 10.0 * tolerance,
+                    "case {name}, steps of {step}, tolerance {tolerance}: error {error}"
+                );
+            }
+        }
+    }
+}
+
+/// Blow-up of the ideal actuator, from a multiprecision quadrature.
+#[test]
+fn escape_is_located_where_the_stretch_becomes_infinite() {
+    for (voltage, time) in [
+        (0.65, 68.055_285_509),
+        (0.7, 40.639_961_044),
+        (1.0, 21.196_654_486),
+    ] {
+        let upper = 1e6;
+        let limits = Limits { upper, ..LIMITS };
+        let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, 1e-12);
+        let motion = direct([0.0; 3], voltage, 0.0);
+        let Ok(Progress::Stopped { limit, after }) = trajectory.advance(&motion, 100.0) else {
+            panic!("voltage {voltage} did not escape");
+        };
+        assert_eq!(limit, Limit::Upper);
+        // Far out λ'' = φ²λ³/c, so that λ = √(2c)/(φ (t* − t)).
+        let rest = (2.0 * 100.0_f64).sqrt() / (voltage * upper);
+        assert!(
+            (after + rest - time).abs() < 1e-9,
+            "voltage {voltage}: {}",
+            after + rest
+        );
+        assert!((trajectory.position() / upper - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn the_lower_limit_stops_a_contraction() {
+    let limits = Limits {
+        lower: 0.5,
+        upper: 10.0,
+    };
+    let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, 1e-10);
+    let motion = direct([0.0; 3], 0.0, -30.0);
+    let stopped = trajectory.advance(&motion, 100.0);
+    assert!(
+        matches!(
+            stopped,
+            Ok(Progress::Stopped {
+                limit: Limit::Lower,
+                ..
+            })
+        ),
+        "{stopped:?}"
+    );
+    assert!((trajectory.position() - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn energy_stays_over_a_million_units_of_time() {
+    let load = Load {
+        voltage_squared: 0.36,
+        prestress: 0.0,
+    };
+    for (tolerance, drift) in [(1e-10, 1e-12), (1e-13, 1e-13)] {
+        let motion = direct(SURFACE, 0.6, 0.0);
+        let mut trajectory = from_rest(tolerance);
+        for _ in 0..1000 {
+            advance(&mut trajectory, &motion, 1000.37);
+            let energy = energy(&motion.coefficients, load, trajectory.state());
+            assert!(
+                energy.abs() < drift,
+                "energy {energy} at tolerance {tolerance}"
+            );
+        }
+    }
+}
+
+/// The same end however the way there is divided, to rounding for a constant
+/// drive and to the tolerance for an alternating one.
+#[test]
+fn splitting_a_step_changes_nothing() {
+    let cases = [
+        (direct(SURFACE, 0.6, 0.5), 1e-12),
+        (alternating(SURFACE, 0.3, 0.1438), 1e-12),
+    ];
+    for (motion, allowed) in &cases {
+        let mut whole = from_rest(1e-12);
+        advance(&mut whole, motion, 300.0);
+        for step in [0.01, 0.37, 7.0, 100.0] {
+            let mut split = from_rest(1e-12);
+            follow(&mut split, motion, 300.0, step);
+            let difference = (split.position() - whole.position()).abs();
+            assert!(difference < *allowed, "steps of {step}: {difference}");
+        }
+    }
+}
+
+#[test]
+fn a_motion_run_back_returns_to_its_start() {
+    let motion = direct(SURFACE, 0.6, 0.5);
+    let mut there = from_rest(1e-12);
+    advance(&mut there, &motion, 137.3);
+    let State { position, rate } = there.state();
+    let start = State {
+        position,
+        rate: -rate,
+    };
+    let mut back = Trajectory::new(start, Double::ZERO, LIMITS, 1e-12);
+    advance(&mut back, &motion, 137.3);
+    assert!((back.position() - 1.0).abs() < 1e-12 && back.rate().abs() < 1e-12);
+}
+
+#[test]
+fn rest_at_an_equilibrium_stays_and_wakes() {
+    let mut trajectory = from_rest(1e-10);
+    advance(&mut trajectory, &direct([0.0; 3], 0.0, 0.0), 1e6);
+    assert_eq!(trajectory.state(), REST);
+    trajectory.restart(Double::new(1e6));
+    advance(&mut trajectory, &direct([0.0; 3], 0.3, 0.0), 10.0);
+    assert!(trajectory.position() > 1.0);
+}
+
+#[test]
+fn a_step_that_needs_too_much_work_says_so() {
+    let motion = alternating(SURFACE, 0.3, 1e3);
+    let failure = from_rest(1e-3).advance(&motion, 1e9);
+    assert!(
+        matches!(failure, Err(Failure::TooManySubsteps { .. })),
+        "{failure:?}"
+    );
+}
+
+/// A fixed-step Runge–Kutta integration (order 4), nothing shared with ours
+/// but Eq. 16 as it stands in the paper.
+fn runge_kutta(aspect: f64, surface: [f64; 3], voltage: f64, prestress: f64, time: f64) -> f64 {
+    let [gamma, tau, elasticity] = surface;
+    let f = |x: f64, v: f64| {
+        let surface = gamma * x
+            + tau * (2.0 * x.powi(3) - x)
+            + 0.5 * elasticity * x * (x * x - 1.0) * (3.0 * x * x - 1.0);
+        let force =
+            6.0 * v * v / x.powi(7) - x + x.powi(-5) + prestress + voltage * voltage * x.powi(3)
+                - 2.0 * surface;
+        force / (aspect + 2.0 / x.powi(6))
+    };
+    let steps = 20_000;
+    let h = time / f64::from(steps);
+    let (mut x, mut v) = (1.0, 0.0);
+    for _ in 0..steps {
+        let (k1, l1) = (v, f(x, v));
+        let (k2, l2) = (v + 0.5 * h * l1, f(x + 0.5 * h * k1, v + 0.5 * h * l1));
+        let (k3, l3) = (v + 0.5 * h * l2, f(x + 0.5 * h * k2, v + 0.5 * h * l2));
+        let (k4, l4) = (v + h * l3, f(x + h * k3, v + h * l3));
+        x += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+        v += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
+    }
+    x
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Bounded motions of all sizes against the independent integrator, whose
+    /// own error (20 000 steps in some ten periods) is below the bound.
+    #[test]
+    fn random_actuators_move_as_an_independent_integrator_says(
+        magnitude in -1.0..8.0_f64,
+        gamma in 0.0..0.5_f64,
+        tau in 0.0..0.5_f64,
+        elasticity in 0.0..1.0_f64,
+        voltage in 0.0..0.4_f64,
+        prestress in -1.0..0.2_f64,
+    ) {
+        let aspect = 10_f64.powf(magnitude);
+        let surface = [gamma, tau, elasticity];
+        let time = 20.0 * aspect.max(1.0).sqrt();
+        let motion = Motion {
+            coefficients: coefficients(aspect, surface),
+            drive: Drive::constant(voltage, prestress),
+        };
+        let mut trajectory = from_rest(1e-11);
+        advance(&mut trajectory, &motion, time);
+        let independent = runge_kutta(aspect, surface, voltage, prestress, time);
+        prop_assert!((trajectory.position() - independent).abs() < 1e-8);
+    }
+
+    /// (γ, τ, φ²) moves as (γ − τ, 0, φ² − 4τ).
+    #[test]
+    fn surface_tension_is_surface_energy_and_voltage(
+        tau in 0.0..0.1_f64,
+        more in 0.0..0.1_f64,
+        voltage_squared in 0.0..0.2_f64,
+        time in 1.0..300.0_f64,
+    ) {
+        let gamma = tau + more;
+        let with = direct([gamma, tau, 0.1], (voltage_squared + 4.0 * tau).sqrt(), 0.1);
+        let without = direct([more, 0.0, 0.1], voltage_squared.sqrt(), 0.1);
+        let (mut a, mut b) = (from_rest(1e-12), from_rest(1e-12));
+        advance(&mut a, &with, time);
+        advance(&mut b, &without, time);
+        prop_assert!((a.position() - b.position()).abs() < 1e-12);
+    }
+}
