@@ -19,6 +19,7 @@ from pathlib import Path
 import figure_style as style
 import figures
 import references
+import trajectories
 import turning_points
 from actuator_fmu import DEFAULT_FMU, ActuatorFmu
 from comparison import Comparison
@@ -39,6 +40,8 @@ TERMINATE = 2
 """Value of on_pull_in that ends the run at the collapse."""
 
 SECTION_POINTS = 15_000
+
+COMMUNICATION_STEPS = (0.01, 0.37, 1.0, 25.0)
 
 
 class Progress:
@@ -172,6 +175,20 @@ def driven(actuator: ActuatorFmu, table: Comparison) -> figures.Figure:
     return figures.driven_response(response, section, amplitude=amplitude, title=title)
 
 
+def reference_trajectories(actuator: ActuatorFmu, table: Comparison) -> None:
+    """The multiprecision trajectories at very different communication steps, where they differ most."""
+    for name, scene in references.TRAJECTORY_SCENES.items():
+        values = " ".join(f"{variable}={value:g}" for variable, value in scene.items())
+        table.heading(f"Trajectory {name}: {values}")
+        for communication_step in COMMUNICATION_STEPS:
+            worst = trajectories.follow(actuator, name, communication_step, TOLERANCE)
+            table.add(
+                f"steps of {communication_step:<6g} {worst.quantity} at t = {worst.time:g}",
+                exact=worst.exact,
+                measured=worst.measured,
+            )
+
+
 def main() -> int:
     """Run all stages; 0 on success, 2 if there is no packed FMU."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -184,7 +201,7 @@ def main() -> int:
 
     style.apply()
     table = Comparison()
-    progress = Progress(stages=5)
+    progress = Progress(stages=6)
     drawn = {}
     with ActuatorFmu(arguments.fmu) as actuator:
         with progress.stage("DC responses without prestress (Fig. 2)"):
@@ -195,6 +212,8 @@ def main() -> int:
             drawn["pull_in"] = pull_in(actuator, table)
         with progress.stage("AC response and Poincaré section"):
             drawn["ac_response"] = driven(actuator, table)
+        with progress.stage("trajectories at communication steps from 0.01 to 25"):
+            reference_trajectories(actuator, table)
     with progress.stage("writing figures"):
         paths = [style.save(figure, arguments.output / f"{name}.png") for name, figure in drawn.items()]
 
