@@ -1,6 +1,9 @@
 //! The C functions, called as a host would: every function in every phase
 //! against the table of the standard, hostile arguments, and random orders.
-#![allow(unsafe_code)]
+//!
+//! Safety of all calls: components are live, and arrays are as long as their
+//! counts say, or null where that is what is tested.
+#![allow(unsafe_code, clippy::undocumented_unsafe_blocks)]
 
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -32,7 +35,6 @@ unsafe extern "C" fn logger(
     category: *const c_char,
     message: *const c_char,
 ) {
-    // SAFETY: the pointers come from our own library during this call.
     let (log, category, message) = unsafe {
         (
             &*environment.cast::<Log>(),
@@ -66,14 +68,15 @@ impl Host {
                 *const c_char,
             );
         let callbacks = fmi2CallbackFunctions {
-            // SAFETY: see `logger`.
-            logger: Some(unsafe { std::mem::transmute::<*const (), _>(named as *const ()) }),
+            // See `logger`.
+            logger: unsafe {
+                std::mem::transmute::<*const (), fmi2CallbackLogger>(named as *const ())
+            },
             allocateMemory: None,
             freeMemory: None,
             stepFinished: None,
             componentEnvironment: (&raw const *log).cast_mut().cast(),
         };
-        // SAFETY: all pointers live during the call.
         let component = unsafe { fmi2Instantiate(name, kind, guid, null(), &callbacks, 0, 1) };
         Host { component, log }
     }
@@ -92,7 +95,6 @@ impl Host {
     fn in_phase(phase: &str) -> Host {
         let host = Host::new();
         let c = host.component;
-        // SAFETY: a live component.
         unsafe {
             if phase == "instantiated" {
                 return host;
@@ -117,20 +119,17 @@ impl Host {
     }
 
     fn set(&self, name: &str, value: f64) -> fmi2Status {
-        // SAFETY: a live component and one value.
         unsafe { fmi2SetReal(self.component, &reference(name), 1, &value) }
     }
 
     fn get(&self, name: &str) -> f64 {
         let mut value = f64::NAN;
-        // SAFETY: a live component and one value.
         let status = unsafe { fmi2GetReal(self.component, &reference(name), 1, &mut value) };
         assert_eq!(status, OK, "{:?}", self.last_line());
         value
     }
 
     fn step(&self, time: f64, step: f64) -> fmi2Status {
-        // SAFETY: a live component.
         unsafe { fmi2DoStep(self.component, time, step, 1) }
     }
 
@@ -146,7 +145,6 @@ impl Host {
 
 impl Drop for Host {
     fn drop(&mut self) {
-        // SAFETY: freed once.
         unsafe { fmi2FreeInstance(self.component) };
     }
 }
@@ -285,14 +283,12 @@ fn bad_values_are_refused_by_name_and_limit_and_change_nothing() {
     for (name, value, message) in cases {
         // The good value before the bad one must not be set either.
         let (references, values) = ([reference("gamma_s"), reference(name)], [0.05, value]);
-        // SAFETY: a live component and two values.
         let status =
             unsafe { fmi2SetReal(host.component, references.as_ptr(), 2, values.as_ptr()) };
         assert_eq!(status, ERROR, "{name} = {value}");
         assert!(host.last_line().contains(message), "{}", host.last_line());
         assert_eq!(host.get("gamma_s"), 0.0);
     }
-    // SAFETY: a live component and one value.
     let status = unsafe { fmi2SetReal(host.component, &99, 1, &1.0) };
     assert_eq!(status, ERROR);
     assert!(
@@ -305,7 +301,6 @@ fn bad_values_are_refused_by_name_and_limit_and_change_nothing() {
 fn impossible_steps_are_refused_and_the_run_goes_on() {
     let host = Host::new();
     let c = host.component;
-    // SAFETY: a live component.
     unsafe {
         assert_eq!(fmi2SetupExperiment(c, 1, 1e-10, 5.0, 1, 7.0), OK);
         assert_eq!(fmi2EnterInitializationMode(c), OK);
@@ -334,7 +329,6 @@ fn impossible_steps_are_refused_and_the_run_goes_on() {
 fn null_pointers_are_refused_everywhere() {
     let host = Host::in_phase("stepping");
     let c = host.component;
-    // SAFETY: null pointers are what is tested.
     unsafe {
         for (_, function, _) in TABLE {
             assert_eq!(function(null_mut()), ERROR);
@@ -396,7 +390,6 @@ fn instances_are_refused_with_a_reason() {
         assert!(host.component.is_null());
         assert!(host.last_line().contains(message), "{}", host.last_line());
     }
-    // SAFETY: null callbacks are what is tested.
     let none = unsafe { fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), null(), null(), 0, 0) };
     assert!(none.is_null());
 }
@@ -406,7 +399,6 @@ fn start_values_must_lie_between_the_limits() {
     let host = Host::in_phase("initialization");
     assert_eq!(host.set("lambda_start", 20.0), OK);
     assert_eq!(host.get("lambda"), 20.0);
-    // SAFETY: a live component.
     unsafe {
         assert_eq!(fmi2ExitInitializationMode(host.component), ERROR);
         assert!(
@@ -423,7 +415,6 @@ fn start_values_must_lie_between_the_limits() {
 #[test]
 fn a_tolerance_out_of_range_is_moved_with_a_warning() {
     let host = Host::new();
-    // SAFETY: a live component.
     let setup =
         |tolerance| unsafe { fmi2SetupExperiment(host.component, 1, tolerance, 0.0, 0, 0.0) };
     assert_eq!(setup(1e-30), WARNING);
@@ -442,7 +433,6 @@ fn log_categories_are_obeyed() {
     let host = Host::in_phase("stepping");
     let lines = || host.log.lock().expect("one thread").len();
     let before = lines();
-    // SAFETY: a live component and one text.
     let only =
         |category: &CStr| unsafe { fmi2SetDebugLogging(host.component, 1, 1, &category.as_ptr()) };
     assert_eq!(only(c"logEvents"), OK);
@@ -477,7 +467,6 @@ fn a_collapse_is_held_and_told_once() {
     assert_eq!(host.get("lambda_dot"), 0.0);
     assert!((host.get("pull_in_time") - 38.6).abs() < 0.1);
     let mut pulled_in = 0;
-    // SAFETY: a live component and one value.
     let status =
         unsafe { fmi2GetBoolean(host.component, &reference("pulled_in"), 1, &mut pulled_in) };
     assert_eq!((status, pulled_in), (OK, 1));
@@ -487,7 +476,6 @@ fn a_collapse_is_held_and_told_once() {
 fn a_collapse_that_terminates_tells_its_time() {
     let host = Host::in_phase("failed");
     let (mut terminated, mut time) = (0, 0.0);
-    // SAFETY: a live component and one value each.
     unsafe {
         let c = host.component;
         assert_eq!(
@@ -516,7 +504,6 @@ fn reset_gives_the_same_run_bit_for_bit() {
         host.get("lambda")
     };
     let first = run();
-    // SAFETY: a live component.
     unsafe {
         assert_eq!(fmi2Reset(c), OK);
         assert_eq!(fmi2EnterInitializationMode(c), OK);
@@ -534,7 +521,6 @@ fn input_derivatives_are_followed_inside_a_step() {
     let exact = Host::in_phase("stepping");
     assert_eq!(exact.set("phi", cubic(0.0)), OK);
     let (phi, orders, values) = ([0, 0, 0], [1, 2, 3], [0.05, -0.02, 0.006]);
-    // SAFETY: a live component and three values each.
     let status = unsafe {
         fmi2SetRealInputDerivatives(
             exact.component,
@@ -620,12 +606,10 @@ proptest! {
                 }
                 Random::SetReal(reference, value) => {
                     let (mut before, mut after) = (0.0, 0.0);
-                    // SAFETY: a live component and one value each.
                     let (read, set) = unsafe {(
                         fmi2GetReal(c, &reference, 1, &mut before),
                         fmi2SetReal(c, &reference, 1, &value),
                     )};
-                    // SAFETY: as above.
                     unsafe { fmi2GetReal(c, &reference, 1, &mut after) };
                     if read == OK {
                         prop_assert_eq!(after, if set == OK { value } else { before });
@@ -640,7 +624,6 @@ proptest! {
                 }
                 Random::GetReal(reference) => {
                     let mut value = 0.0;
-                    // SAFETY: a live component and one value.
                     let status = unsafe { fmi2GetReal(c, &reference, 1, &mut value) };
                     prop_assert!(status != OK || !value.is_nan(), "{reference} is {value}");
                 }

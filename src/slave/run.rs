@@ -76,7 +76,7 @@ impl Run {
         let time = self.time.value();
         let rounding = TIME_ROUNDING * time.abs() + STEP_ROUNDING * step;
         let off = (current - time).abs();
-        if !(off <= rounding) {
+        if off.is_nan() || off > rounding {
             return Err(Fault::error(format!(
                 "the current communication point {current} is not the time {time} \
                  at which the last step ended"

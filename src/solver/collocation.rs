@@ -97,19 +97,19 @@ fn sweep<S: Simd, L: LocalEquation>(
     let load_start = equation.load(0.0);
     let at_start = equation.acceleration(load_start, start.position, start.rate);
 
-    // Without forces; the first sweep adds them.
     let middle = start.position + half * start.rate;
     let drift = node * splat(half * start.rate);
-    let (mut sums, mut differences);
-    let mut right = (splat(middle) + drift, splat(start.rate));
-    let mut left = (splat(middle) - drift, splat(start.rate));
     // A constant acceleration as the first guess.
-    let lift = |u: f64x8<S>| u * u * splat(0.5 * square * at_start);
-    let one = splat(1.0);
-    right.0 = right.0 + lift(one + node);
-    left.0 = left.0 + lift(one - node);
-    right.1 = right.1 + (one + node) * splat(half * at_start);
-    left.1 = left.1 + (one - node) * splat(half * at_start);
+    let guess = |since: f64x8<S>| {
+        let gain = since * splat(half * at_start);
+        let rate = gain + splat(start.rate);
+        let mean_rate = gain.mul_add(splat(0.5), splat(start.rate));
+        let position = (since * splat(half)).mul_add(mean_rate, splat(start.position));
+        (position, rate)
+    };
+    let mut right = guess(splat(1.0) + node);
+    let mut left = guess(splat(1.0) - node);
+    let (mut sums, mut differences);
 
     let mut sweeps = 0;
     let mut last_change = f64::INFINITY;

@@ -51,14 +51,75 @@ impl<S: Simd> Number for f64x8<S> {
         SimdFloat::mul_add(self, factor, addend)
     }
 
+    /// Taylor series after taking out multiples of π. Exact reduction below
+    /// 1e6 radians; absolute error below 3e-16.
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let (mut sine, mut cosine) = (self, self);
-        for lane in 0..Self::LEN {
-            let (s, c) = self[lane].sin_cos();
-            sine[lane] = s;
-            cosine[lane] = c;
+        let number = |value: f64| self.same(value);
+        let halves = (self * number(std::f64::consts::FRAC_1_PI)).round_ties_even();
+        let rest = self - halves * number(PI_HIGH) - halves * number(PI_LOW);
+        let square = rest * rest;
+        let series = |coefficients: &[f64]| {
+            let mut sum = number(0.0);
+            for &coefficient in coefficients {
+                sum = SimdFloat::mul_add(sum, square, number(coefficient));
+            }
+            sum
+        };
+        // −1 for an odd number of half turns.
+        let odd = halves - (halves * number(0.5)).floor() * number(2.0);
+        let sign = number(1.0) - odd * number(2.0);
+        (rest * series(&SINE) * sign, series(&COSINE) * sign)
+    }
+}
+
+/// π in 33 bits, so that small multiples are exact, and the rest.
+const PI_HIGH: f64 = 3.141_592_653_468_251_2;
+const PI_LOW: f64 = 1.215_420_101_301_238_4e-10;
+
+/// Number of terms: the next one is below 1e-18 at π/2.
+const TERMS: usize = 12;
+
+/// (−1)ᵏ/(2k+1)!, the highest first: sin r = r · Σ r²ᵏ.
+const SINE: [f64; TERMS] = reciprocal_factorials(1);
+
+/// (−1)ᵏ/(2k)!, the highest first.
+const COSINE: [f64; TERMS] = reciprocal_factorials(0);
+
+const fn reciprocal_factorials(first: usize) -> [f64; TERMS] {
+    let mut terms = [0.0; TERMS];
+    let mut factorial = 1.0;
+    let mut k = 0;
+    while k < TERMS {
+        let n = 2 * k + first;
+        if n > 1 {
+            factorial *= -((n * (n - 1)) as f64);
         }
-        (sine, cosine)
+        terms[TERMS - 1 - k] = 1.0 / factorial;
+        k += 1;
+    }
+    terms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fearless_simd::{Level, SimdFrom, dispatch};
+
+    #[test]
+    fn sine_and_cosine_of_lanes_are_those_of_single_numbers() {
+        for step in 0..4000 {
+            let angles: [f64; 8] =
+                std::array::from_fn(|lane| -20.0 + 0.01 * f64::from(step) + 0.001 * lane as f64);
+            let (sine, cosine) = dispatch!(Level::new(), simd => {
+                let (sine, cosine) = Number::sin_cos(f64x8::simd_from(simd, angles));
+                (<[f64; 8]>::from(sine), <[f64; 8]>::from(cosine))
+            });
+            for lane in 0..8 {
+                let (s, c) = angles[lane].sin_cos();
+                assert!((sine[lane] - s).abs() < 3e-16, "sin {}", angles[lane]);
+                assert!((cosine[lane] - c).abs() < 3e-16, "cos {}", angles[lane]);
+            }
+        }
     }
 }

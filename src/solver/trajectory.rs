@@ -26,8 +26,8 @@ const FIRST_SUBSTEP: f64 = 2.0;
 /// A substep shorter than this part of the time scale cannot go on.
 const SHORTEST: f64 = 1e-12;
 
-/// Substeps that one call may take: some seconds of work.
-const MOST_SUBSTEPS: u32 = 20_000_000;
+/// Substeps that one call may take: about a second of work.
+const MOST_SUBSTEPS: u32 = 2_000_000;
 
 /// How far an advance came.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -106,6 +106,8 @@ pub struct Trajectory {
     stop: Option<(Limit, Double)>,
     at_rest: bool,
     next_length: Option<f64>,
+    /// Whether a motion that repeats is looked for.
+    follows_orbits: bool,
 }
 
 impl Trajectory {
@@ -133,7 +135,22 @@ impl Trajectory {
             stop: None,
             at_rest: false,
             next_length: None,
+            follows_orbits: true,
         }
+    }
+
+    /// The same motion computed with another set of processor instructions.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Trajectory {
+        self.level = level;
+        self
+    }
+
+    /// The same motion, integrated all the way even where it repeats.
+    #[must_use]
+    pub fn without_orbits(mut self) -> Trajectory {
+        self.follows_orbits = false;
+        self
     }
 
     /// Starts anew from the present state at `time`: the equation has changed.
@@ -316,7 +333,7 @@ impl Trajectory {
     /// Adds one more piece. Returns by how much the origin was moved.
     /// The error is the length of a substep that was too short to go on.
     fn extend<E: Equation>(&mut self, equation: &E) -> Result<Double, f64> {
-        let autonomous = equation.is_autonomous();
+        let autonomous = self.follows_orbits && equation.is_autonomous();
         let begin = self.end();
         let state = match self.count {
             0 => self.start,
@@ -376,7 +393,7 @@ impl Trajectory {
         let scale = state.position.abs();
         let mut length = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);
         loop {
-            if !(length > shortest) {
+            if length.is_nan() || length <= shortest {
                 return Err(length);
             }
             let settled = control.settled() * scale;
