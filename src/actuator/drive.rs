@@ -99,16 +99,24 @@ impl Harmonic {
         phase: 0.0,
     };
 
-    /// The angle ωt + ϑ at `time`, reduced to a few turns before it is rounded:
-    /// at t = 1e9 an f64 angle would have lost half its digits.
+    /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
+    /// t = 1e9 an f64 angle would have lost half its digits.
     fn angle(&self, time: Double) -> f64 {
-        const TURN: Double = Double {
-            high: std::f64::consts::TAU,
-            low: 2.449_293_598_294_706_4e-16,
+        /// 2π in 33 bits, so that its small multiples are exact, and the rest.
+        const TURN: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
+        const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
+        let angle = time.scale(self.frequency);
+        let turns = (angle.high / std::f64::consts::TAU).round();
+        let rest = if turns.abs() < EXACT_TURNS {
+            (angle.high - turns * TURN[0]) - turns * TURN[1] + angle.low
+        } else {
+            let turn = Double {
+                high: std::f64::consts::TAU,
+                low: 2.449_293_598_294_706_4e-16,
+            };
+            angle.sub(turn.scale(turns)).value()
         };
-        let angle = time.scale(self.frequency).add(Double::new(self.phase));
-        let turns = (angle.value() / TURN.high).round();
-        angle.sub(TURN.scale(turns)).value()
+        rest + self.phase
     }
 }
 
@@ -169,18 +177,18 @@ impl Drive {
             frequency,
             ..
         } = self.harmonic;
-        let (mut sine, mut cosine) = (0.0, 0.0);
+        let mut angle = 0.0;
         if amplitude != 0.0 {
-            (sine, cosine) = self.harmonic.angle(time).sin_cos();
+            angle = self.harmonic.angle(time);
             if frequency == 0.0 {
-                voltage.set_value(voltage.value() + amplitude * sine);
+                voltage.set_value(voltage.value() + amplitude * angle.sin());
             }
         }
         LocalDrive {
             voltage,
             prestress,
-            in_phase: amplitude * sine,
-            quadrature: amplitude * cosine,
+            amplitude,
+            angle,
             frequency: if amplitude == 0.0 { 0.0 } else { frequency },
         }
     }
@@ -191,9 +199,9 @@ impl Drive {
 pub struct LocalDrive {
     voltage: Polynomial,
     prestress: Polynomial,
-    /// φ_a sin and φ_a cos of the angle at the origin.
-    in_phase: f64,
-    quadrature: f64,
+    amplitude: f64,
+    /// ωt + ϑ at the origin, less whole turns.
+    angle: f64,
     /// 0 where nothing alternates.
     frequency: f64,
 }
@@ -210,12 +218,8 @@ impl LocalDrive {
         if self.frequency == 0.0 {
             return polynomial;
         }
-        let (sine, cosine) = (offset * offset.same(self.frequency)).sin_cos();
-        let alternating = cosine.mul_add(
-            offset.same(self.in_phase),
-            sine * offset.same(self.quadrature),
-        );
-        polynomial + alternating
+        let angle = offset.mul_add(offset.same(self.frequency), offset.same(self.angle));
+        angle.sin().mul_add(offset.same(self.amplitude), polynomial)
     }
 
     /// Prestress at `offset` after the origin.

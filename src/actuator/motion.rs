@@ -28,8 +28,10 @@ pub struct Load<N> {
 /// for it. Multiplied by λ⁷ it needs a single division:
 ///
 /// ```text
-/// λ'' = [6λ'² + λ² + λ⁶ (S λ − λ² (linear + λ² (cubic − φ² + quintic λ²)))] / (λ (c λ⁶ + 2))
+/// λ'' = [6λ'² + λ² + S λ⁷ − λ⁸ (linear + (cubic − φ²) λ² + quintic λ⁴)] / (c λ⁷ + 2λ)
 /// ```
+///
+/// The powers are arranged so that few operations wait for one another.
 #[inline(always)]
 pub fn acceleration<N: Number>(
     coefficients: &Coefficients,
@@ -39,14 +41,14 @@ pub fn acceleration<N: Number>(
 ) -> N {
     let number = |value: f64| stretch.same(value);
     let square = stretch * stretch;
-    let sixth = square * square * square;
+    let fourth = square * square;
+    let seventh = (stretch * square) * fourth;
     let cubic = number(coefficients.cubic) - load.voltage_squared;
-    let upper = square.mul_add(number(coefficients.quintic), cubic);
-    let elastic = square.mul_add(upper, number(coefficients.linear));
-    let force = load.prestress * stretch - square * elastic;
-    let inertial = (rate * rate).mul_add(number(6.0), square);
-    let inertia = sixth.mul_add(number(coefficients.inertia), number(2.0));
-    sixth.mul_add(force, inertial) / (stretch * inertia)
+    let lower = cubic.mul_add(square, number(coefficients.linear));
+    let elastic = fourth.mul_add(number(coefficients.quintic), lower);
+    let driven = seventh.mul_add(load.prestress, (rate * rate).mul_add(number(6.0), square));
+    let inertia = seventh.mul_add(number(coefficients.inertia), stretch + stretch);
+    (driven - (fourth * fourth) * elastic) / inertia
 }
 
 /// The Hamiltonian 𝓗 of Eq. 18, nondimensional as in Eq. 19 and 0 for the

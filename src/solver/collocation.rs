@@ -22,11 +22,9 @@ const MOST_SWEEPS: u32 = 40;
 /// Corrections below this many ulps of the position are rounding.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// A substep that has been solved.
+/// What is to be known of a substep that has been solved.
 #[derive(Clone, Copy, Debug)]
 pub struct Substep {
-    /// The motion over the substep.
-    pub segment: Segment,
     /// Estimated largest error of the position inside the substep.
     pub error: f64,
     /// Largest position at a node.
@@ -35,6 +33,8 @@ pub struct Substep {
     pub lowest: f64,
     /// Fixed-point sweeps that were needed.
     pub sweeps: u32,
+    /// By how much the slowest sweep shrank the change of the one before.
+    pub contraction: f64,
 }
 
 /// The fixed-point iteration did not converge: the substep is too long.
@@ -42,7 +42,8 @@ pub struct Substep {
 pub struct Diverged;
 
 /// Solves a substep of the given `length` from `start`, iterating until the
-/// position is within `settled` of the solution of the stages.
+/// position is within `settled` of the solution of the stages, and leaves the
+/// motion in `segment`.
 ///
 /// # Errors
 /// [`Diverged`] where the iteration does not converge or leaves the finite
@@ -53,8 +54,9 @@ pub fn solve<L: LocalEquation>(
     start: State,
     length: f64,
     settled: f64,
+    segment: &mut Segment,
 ) -> Result<Substep, Diverged> {
-    dispatch!(level, simd => sweep(simd, equation, start, length, settled))
+    dispatch!(level, simd => sweep(simd, equation, start, length, settled, segment))
 }
 
 /// `Σ_j column[j] · value[j]`, in a fixed order.
@@ -85,6 +87,7 @@ fn sweep<S: Simd, L: LocalEquation>(
     start: State,
     length: f64,
     settled: f64,
+    segment: &mut Segment,
 ) -> Result<Substep, Diverged> {
     let tables = &GAUSS_16;
     let half = 0.5 * length;
@@ -99,20 +102,15 @@ fn sweep<S: Simd, L: LocalEquation>(
 
     let middle = start.position + half * start.rate;
     let drift = node * splat(half * start.rate);
-    // A constant acceleration as the first guess.
-    let guess = |since: f64x8<S>| {
-        let gain = since * splat(half * at_start);
-        let rate = gain + splat(start.rate);
-        let mean_rate = gain.mul_add(splat(0.5), splat(start.rate));
-        let position = (since * splat(half)).mul_add(mean_rate, splat(start.position));
-        (position, rate)
-    };
-    let mut right = guess(splat(1.0) + node);
-    let mut left = guess(splat(1.0) - node);
+    let one = splat(1.0);
+    let mut right = first_guess(start, half, at_start, one + node);
+    let mut left = first_guess(start, half, at_start, one - node);
     let (mut sums, mut differences);
+    let (mut mean, mut tilt);
 
     let mut sweeps = 0;
     let mut last_change = f64::INFINITY;
+    let mut contraction = 0.0_f64;
     loop {
         sweeps += 1;
         let f_right = equation.acceleration(load_right, right.0, right.1);
@@ -120,8 +118,8 @@ fn sweep<S: Simd, L: LocalEquation>(
         sums = array(f_right + f_left);
         differences = array(f_right - f_left);
 
-        let mean = dot(&tables.mean, &sums);
-        let tilt = dot(&tables.tilt, &differences);
+        mean = dot(&tables.mean, &sums);
+        tilt = dot(&tables.tilt, &differences);
         let once_odd = product(simd, &tables.once_from_sums, &sums);
         let once_even = product(simd, &tables.once_from_differences, &differences);
         let twice_even = product(simd, &tables.twice_from_sums, &sums);
@@ -148,6 +146,7 @@ fn sweep<S: Simd, L: LocalEquation>(
         if sweeps > 1 && change < last_change {
             // The error left is the change times the rate of convergence.
             let ratio = change / last_change;
+            contraction = contraction.max(ratio);
             if change * ratio <= settled * (1.0 - ratio) {
                 break;
             }
@@ -164,8 +163,6 @@ fn sweep<S: Simd, L: LocalEquation>(
 
     let highest = right.0.max(left.0).reduce_max();
     let lowest = right.0.min(left.0).reduce_min();
-    let mean = dot(&tables.mean, &sums);
-    let tilt = dot(&tables.tilt, &differences);
     let end = State {
         position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
         rate: start.rate + length * mean,
@@ -176,21 +173,39 @@ fn sweep<S: Simd, L: LocalEquation>(
 
     let even = product(simd, &tables.series_from_sums, &sums) * splat(square);
     let odd = product(simd, &tables.series_from_differences, &differences) * splat(square);
-    let segment = Segment::new(half, start, end, array(even), array(odd));
+    segment.assign(half, start, end, array(even), array(odd));
     Ok(Substep {
-        segment,
         error: segment.tail() / NEGLECTED,
         highest,
         lowest,
         sweeps,
+        contraction,
     })
+}
+
+/// Position and rate under a constant acceleration, `since` counted in halves
+/// of the substep. A function, since closures would not be inlined here and
+/// then not be compiled for the lanes' instructions.
+#[inline(always)]
+fn first_guess<S: Simd>(
+    start: State,
+    half: f64,
+    acceleration: f64,
+    since: f64x8<S>,
+) -> (f64x8<S>, f64x8<S>) {
+    let splat = |value: f64| f64x8::splat(since.simd, value);
+    let gain = since * splat(half * acceleration);
+    let rate = gain + splat(start.rate);
+    let mean_rate = gain.mul_add(splat(0.5), splat(start.rate));
+    let position = (since * splat(half)).mul_add(mean_rate, splat(start.position));
+    (position, rate)
 }
 
 /// Between the nodes the position misses about this part of the last two
 /// Legendre coefficients: f is integrated twice, which divides degree 16 by
 /// some 16², and its series goes on falling. Measured on DC and AC motions with
-/// substeps of 6 to 14: 5 to 18 times this number.
-const NEGLECTED: f64 = 1000.0;
+/// substeps of 6 to 14: 1 to 4 times this number.
+const NEGLECTED: f64 = 5000.0;
 
 #[inline(always)]
 fn array<S: Simd>(lanes: f64x8<S>) -> [f64; PAIRS] {

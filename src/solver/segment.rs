@@ -25,31 +25,37 @@ pub struct Segment {
 }
 
 impl Segment {
-    /// The motion from `start` to `end` over a substep of twice the length
-    /// `half`, with f given by half² times its Legendre coefficients.
+    /// A segment of no length.
     #[must_use]
-    pub fn new(
-        half: f64,
-        start: State,
-        end: State,
-        even: [f64; PAIRS],
-        odd: [f64; PAIRS],
-    ) -> Segment {
+    pub const fn nothing(state: State) -> Segment {
         Segment {
-            half,
-            start,
-            end,
-            even,
-            odd,
+            half: 0.0,
+            start: state,
+            end: state,
+            even: [0.0; PAIRS],
+            odd: [0.0; PAIRS],
             power: [0.0; TERMS],
             expanded: false,
         }
     }
 
-    /// A segment of no length.
-    #[must_use]
-    pub fn nothing(state: State) -> Segment {
-        Segment::new(0.0, state, state, [0.0; PAIRS], [0.0; PAIRS])
+    /// Makes this the motion from `start` to `end` over a substep of twice the
+    /// length `half`, with f given by half² times its Legendre coefficients.
+    pub fn assign(
+        &mut self,
+        half: f64,
+        start: State,
+        end: State,
+        even: [f64; PAIRS],
+        odd: [f64; PAIRS],
+    ) {
+        // Not the powers: they are 144 bytes that may never be asked for.
+        self.half = half;
+        self.start = start;
+        self.end = end;
+        self.even = even;
+        self.odd = odd;
+        self.expanded = false;
     }
 
     /// The length of the substep.
@@ -172,7 +178,8 @@ mod tests {
         };
         let (mut even, mut odd) = ([0.0; PAIRS], [0.0; PAIRS]);
         (even[0], odd[0]) = (4.0 * 6.0, 4.0 * 12.0);
-        let mut segment = Segment::new(2.0, start, end, even, odd);
+        let mut segment = Segment::nothing(start);
+        segment.assign(2.0, start, end, even, odd);
         segment.expand();
         segment
     }

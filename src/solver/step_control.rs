@@ -9,8 +9,13 @@ const ORDER: f64 = 18.0;
 /// substep (1e3-fold in 2000 units of time of a resonant motion).
 const SETTLED: f64 = 1e-3;
 
-/// More sweeps than this cost more than a shorter substep.
-const MANY_SWEEPS: u32 = 18;
+/// Contraction above which a shorter substep is cheaper: it grows with the
+/// square of the length, and near 1 the iteration diverges.
+const SLOW: f64 = 0.35;
+
+/// What the next substep aims at, so that few are rejected: an error of
+/// 0.85¹⁸, a twentieth of the tolerance.
+const CAUTION: f64 = 0.85;
 
 /// Chooses substeps so that the error in each stays below the tolerance.
 #[derive(Clone, Copy, Debug)]
@@ -42,17 +47,17 @@ impl StepControl {
     }
 
     /// Judges a substep by its estimated error, relative to the position, and
-    /// by the fixed-point sweeps it needed.
+    /// by the contraction of its fixed-point iteration.
     #[must_use]
-    pub fn judge(&self, error: f64, sweeps: u32) -> Verdict {
+    pub fn judge(&self, error: f64, contraction: f64) -> Verdict {
         let ratio = error / self.tolerance;
-        // 0.9: the estimate is rough; below 1e-30 the error is nothing at all.
-        let by_error = 0.9 * ratio.max(1e-30).powf(-1.0 / ORDER);
+        // Below 1e-30 the error is nothing at all.
+        let by_error = CAUTION * ratio.max(1e-30).powf(-1.0 / ORDER);
         if ratio > 1.0 {
             return Verdict::Reject(by_error.max(0.2));
         }
-        let by_effort = if sweeps > MANY_SWEEPS { 0.8 } else { 2.0 };
-        Verdict::Accept(by_error.min(by_effort))
+        let by_effort = (SLOW / contraction).sqrt();
+        Verdict::Accept(by_error.min(by_effort).clamp(0.2, 3.0))
     }
 }
 
@@ -63,14 +68,14 @@ mod tests {
     #[test]
     fn an_error_above_the_tolerance_is_rejected_and_shortens() {
         let control = StepControl::new(1e-9);
-        assert!(matches!(control.judge(1e-3, 5), Verdict::Reject(f) if f < 0.6));
-        assert!(matches!(control.judge(1e-12, 5), Verdict::Accept(f) if f > 1.0));
-        assert!(matches!(control.judge(0.99e-9, 5), Verdict::Accept(f) if f < 1.0));
+        assert!(matches!(control.judge(1e-3, 0.1), Verdict::Reject(f) if f < 0.6));
+        assert!(matches!(control.judge(1e-12, 0.01), Verdict::Accept(f) if f > 1.0));
+        assert!(matches!(control.judge(0.99e-9, 0.01), Verdict::Accept(f) if f < 1.0));
     }
 
     #[test]
     fn slow_convergence_shortens_an_accurate_substep() {
         let control = StepControl::new(1e-9);
-        assert!(matches!(control.judge(0.0, MANY_SWEEPS + 1), Verdict::Accept(f) if f < 1.0));
+        assert!(matches!(control.judge(0.0, 0.7), Verdict::Accept(f) if f < 1.0));
     }
 }

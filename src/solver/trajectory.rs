@@ -92,7 +92,8 @@ pub struct Trajectory {
     origin: Double,
     /// State at the origin.
     start: State,
-    pieces: [Piece; CAPACITY],
+    /// One more than are kept, to solve the next one in.
+    pieces: [Piece; CAPACITY + 1],
     /// Number of pieces in use, from the origin on without a gap.
     count: usize,
     /// The piece in which the present lies.
@@ -125,7 +126,7 @@ impl Trajectory {
             limits,
             origin: time,
             start,
-            pieces: [nothing; CAPACITY],
+            pieces: [nothing; CAPACITY + 1],
             count: 0,
             index: 0,
             now: Double::ZERO,
@@ -348,41 +349,43 @@ impl Trajectory {
                 return Ok(Double::ZERO);
             }
         }
-        let substep = self.substep(&local, state, autonomous)?;
-
-        // Pieces are kept only while an orbit may still come out of them.
+        // Pieces are kept only while an orbit may still come out of them. The
+        // new one is solved beside the old ones, which stand until it is done.
+        let keep = autonomous && self.count < CAPACITY;
+        let slot = self.count;
+        let substep = self.substep(&local, state, autonomous, slot)?;
         let mut shift = Double::ZERO;
-        if self.count > 0 && (!autonomous || self.count == CAPACITY) {
+        if keep {
+            self.count += 1;
+        } else {
             shift = begin;
             self.origin = self.origin.add(begin);
             self.start = state;
             self.now = self.now.sub(begin);
-            self.count = 0;
+            self.pieces[0] = self.pieces[slot];
+            self.count = 1;
             self.index = 0;
             self.first_turn = None;
         }
-        let mut piece = Piece {
-            begin: begin.sub(shift),
-            segment: substep.segment,
-        };
+        let piece = &mut self.pieces[self.count - 1];
+        piece.begin = begin.sub(shift);
         self.stop = self
             .limits
             .first_contact(&mut piece.segment, substep.lowest..=substep.highest)
             .map(|(limit, offset)| (limit, piece.begin.add(Double::new(offset))));
         if autonomous && self.stop.is_none() {
-            self.look_for_turn(&mut piece, state.rate);
+            self.look_for_turn(state.rate);
         }
-        self.pieces[self.count] = piece;
-        self.count += 1;
         Ok(shift)
     }
 
-    /// Solves the next substep, as long as the tolerance allows.
+    /// Solves the next substep into a slot, as long as the tolerance allows.
     fn substep<L: LocalEquation>(
         &mut self,
         local: &L,
         state: State,
         autonomous: bool,
+        slot: usize,
     ) -> Result<Substep, f64> {
         let time_scale = local.time_scale(state);
         let shortest = SHORTEST * time_scale;
@@ -397,9 +400,10 @@ impl Trajectory {
                 return Err(length);
             }
             let settled = control.settled() * scale;
-            let solved = collocation::solve(self.level, local, state, length, settled);
+            let segment = &mut self.pieces[slot].segment;
+            let solved = collocation::solve(self.level, local, state, length, settled, segment);
             let verdict = match &solved {
-                Ok(substep) => control.judge(substep.error / scale, substep.sweeps),
+                Ok(substep) => control.judge(substep.error / scale, substep.contraction),
                 Err(collocation::Diverged) => Verdict::Reject(0.5),
             };
             match (verdict, solved) {
@@ -412,15 +416,15 @@ impl Trajectory {
         }
     }
 
-    /// Notes a turning point of the piece; the second one closes the orbit.
-    fn look_for_turn(&mut self, piece: &mut Piece, rate_at_begin: f64) {
-        if rate_at_begin * piece.segment.end().rate >= 0.0 {
+    /// Notes a turning point of the last piece; the second one closes the orbit.
+    fn look_for_turn(&mut self, rate_at_begin: f64) {
+        let Piece { begin, segment } = &mut self.pieces[self.count - 1];
+        if rate_at_begin * segment.end().rate >= 0.0 {
             return;
         }
-        piece.segment.expand();
-        let segment = &piece.segment;
+        segment.expand();
         let offset = segment.crossing(0.0, segment.length(), Segment::rate);
-        let turn = piece.begin.add(Double::new(offset));
+        let turn = begin.add(Double::new(offset));
         match self.first_turn {
             None => self.first_turn = Some(turn),
             Some(first_turn) if turn.sub(first_turn).value() > 0.0 => {
