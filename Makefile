@@ -18,11 +18,12 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu test env clean
+.PHONY: help run fmu test stress env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
 	@echo 'make test   run every test'
+	@echo 'make stress run the long form of the stress tests (some minutes)'
 	@echo 'make fmu    build and pack the FMU only'
 	@echo 'make env    print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean  remove target and .venv'
@@ -50,6 +51,10 @@ test: $(INSTALLED)
 	@$(CARGO) test --workspace
 	$(call heading,FMPy tests)
 	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
+
+stress: $(INSTALLED)
+	$(call heading,Stress tests)
+	@STRESS=long $(CARGO) test --test stress -- --show-output
 
 env: $(INSTALLED)
 	@$(info export $(ENVIRONMENT)):

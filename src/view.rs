@@ -95,7 +95,7 @@ impl View<'_> {
     #[must_use]
     pub fn voltage(&self) -> f64 {
         let Drive { voltage, since, .. } = &self.scene.drive;
-        voltage.at(self.time.sub(*since).value())
+        voltage.at(self.time.since(*since))
     }
 
     /// Prestress S.
@@ -104,7 +104,7 @@ impl View<'_> {
         let Drive {
             prestress, since, ..
         } = &self.scene.drive;
-        prestress.at(self.time.sub(*since).value())
+        prestress.at(self.time.since(*since))
     }
 
     /// Voltage φ with the built-in alternating voltage added.

@@ -155,7 +155,7 @@ impl Drive {
     /// The same drive with its inputs counted from `time` on.
     #[must_use]
     pub fn rebased(&self, time: Double) -> Drive {
-        let shift = time.sub(self.since).value();
+        let shift = time.since(self.since);
         Drive {
             since: time,
             voltage: self.voltage.shifted(shift),

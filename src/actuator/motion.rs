@@ -120,9 +120,14 @@ impl LocalEquation for LocalMotion {
         acceleration(&self.coefficients, load, position, rate)
     }
 
+    /// Two periods of φ² under the alternating voltage, which the 16 nodes of a
+    /// substep resolve.
+    fn longest_substep(&self) -> f64 {
+        2.0 * std::f64::consts::PI / self.drive.frequency()
+    }
+
     /// 1/√|∂λ''/∂λ| with the terms of the stiffness added up by size, since
-    /// their sum may vanish, and not longer than 1/2ω of an alternating
-    /// voltage, which drives the motion by its square.
+    /// their sum may vanish.
     fn time_scale(&self, state: State) -> f64 {
         let load = self.load(0.0);
         let square = state.position * state.position;
@@ -136,7 +141,7 @@ impl LocalEquation for LocalMotion {
             + linear.abs()
             + square * (3.0 * (cubic - load.voltage_squared).abs() + square * 5.0 * quintic);
         let mass = inertia + 2.0 / square.powi(3);
-        (mass / stiffness).sqrt().min(0.5 / self.drive.frequency())
+        (mass / stiffness).sqrt()
     }
 }
 

@@ -96,7 +96,7 @@ impl Run {
     /// Follows the motion for one step that has been checked.
     pub(super) fn step(&mut self, scene: &Scene, step: f64) -> Result<Option<Event>, Fault> {
         if self.collapse.is_some() {
-            self.time = self.time.add(Double::new(step));
+            self.time = self.time.plus(step);
             return Ok(None);
         }
         if self.stale {
@@ -106,16 +106,16 @@ impl Run {
         }
         match self.trajectory.advance(&self.motion, step) {
             Ok(Progress::Whole) => {
-                self.time = self.time.add(Double::new(step));
+                self.time = self.time.plus(step);
                 Ok(None)
             }
             Ok(Progress::Stopped { limit, after }) => {
-                let at = self.time.add(Double::new(after));
+                let at = self.time.plus(after);
                 self.collapse = Some(Collapse { limit, time: at });
                 let text = describe_collapse(scene, limit, at.value());
                 match scene.on_pull_in {
                     OnPullIn::Hold => {
-                        self.time = self.time.add(Double::new(step));
+                        self.time = self.time.plus(step);
                         Ok(Some(Event {
                             warning: false,
                             text: format!("{text}; it stays there (on_pull_in = hold)"),
@@ -144,7 +144,7 @@ impl Run {
                 format!("the step needs more than {most} substeps; use shorter steps"),
             ),
         };
-        self.time = self.time.add(Double::new(after));
+        self.time = self.time.plus(after);
         let (time, stretch) = (self.time.value(), self.trajectory.position());
         Fault::discard(format!(
             "the integration stopped at time {time} and stretch {stretch}: {why}"

@@ -10,6 +10,8 @@
 //! No arithmetic depends on the number of lanes, so that every SIMD level with
 //! a fused multiply-add gives the same bits.
 
+use std::ops::RangeInclusive;
+
 use fearless_simd::{Level, Simd, SimdBase, SimdFloat, SimdFrom, dispatch, f64x8};
 
 use super::segment::Segment;
@@ -35,6 +37,14 @@ pub struct Substep {
     pub sweeps: u32,
     /// By how much the slowest sweep shrank the change of the one before.
     pub contraction: f64,
+}
+
+impl Substep {
+    /// The range of positions at the nodes.
+    #[must_use]
+    pub fn nodes(&self) -> RangeInclusive<f64> {
+        self.lowest..=self.highest
+    }
 }
 
 /// The fixed-point iteration did not converge: the substep is too long.
@@ -204,8 +214,8 @@ fn first_guess<S: Simd>(
 /// Between the nodes the position misses about this part of the last two
 /// Legendre coefficients: f is integrated twice, which divides degree 16 by
 /// some 16², and its series goes on falling. Measured on DC and AC motions with
-/// substeps of 6 to 14: 1 to 4 times this number.
-const NEGLECTED: f64 = 5000.0;
+/// substeps of 6 to 14: 2 to 9 times this number.
+const NEGLECTED: f64 = 2000.0;
 
 #[inline(always)]
 fn array<S: Simd>(lanes: f64x8<S>) -> [f64; PAIRS] {

@@ -43,6 +43,19 @@ impl Double {
         exact_sum(high, low + tail.low)
     }
 
+    /// `self + addend`.
+    #[must_use]
+    pub const fn plus(self, addend: f64) -> Double {
+        let sum = exact_sum(self.high, addend);
+        exact_sum(sum.high, sum.low + self.low)
+    }
+
+    /// `self − other`, rounded to `f64`: accurate also where the two are close.
+    #[must_use]
+    pub const fn since(self, other: Double) -> f64 {
+        (self.high - other.high) + (self.low - other.low)
+    }
+
     /// `self − other`.
     #[must_use]
     pub const fn sub(self, other: Double) -> Double {
@@ -123,6 +136,13 @@ mod tests {
     fn a_sum_keeps_what_f64_loses() {
         let sum = Double::new(1e9).add(Double::new(1e-9));
         assert_eq!(sum.sub(Double::new(1e9)).value(), 1e-9);
+    }
+
+    #[test]
+    fn a_difference_of_close_numbers_is_accurate() {
+        let late = Double::new(1e9).plus(0.1).plus(1e-9);
+        let difference = late.since(Double::new(1e9).plus(0.1));
+        assert!((difference - 1e-9).abs() < 1e-23, "{difference:e}");
     }
 
     #[test]

@@ -37,32 +37,52 @@ impl Limits {
     ) -> Option<(Limit, f64)> {
         // Between two nodes the motion may go a little beyond both.
         let beyond = 0.25 * (nodes.end() - nodes.start());
-        let (limit, level, sign) = if nodes.end() + beyond >= self.upper {
-            (Limit::Upper, self.upper, 1.0)
-        } else if nodes.start() - beyond <= self.lower {
-            (Limit::Lower, self.lower, -1.0)
-        } else {
+        let upper = nodes.end() + beyond >= self.upper;
+        let lower = nodes.start() - beyond <= self.lower;
+        if !upper && !lower {
             return None;
-        };
-        segment.expand();
-        let over = |s: &Segment, t: f64| sign * (s.position(t) - level);
-        let toward = |s: &Segment, t: f64| sign * s.rate(t);
-        let part = segment.length() / PARTS as f64;
-        for i in 0..PARTS {
-            let (from, to) = (i as f64 * part, (i + 1) as f64 * part);
-            if over(segment, from) >= 0.0 {
-                return Some((limit, from));
-            }
-            let turns = toward(segment, from) > 0.0 && toward(segment, to) < 0.0;
-            let farthest = if turns && over(segment, to) < 0.0 {
-                segment.crossing(from, to, toward)
-            } else {
-                to
-            };
-            if over(segment, farthest) >= 0.0 {
-                return Some((limit, segment.crossing(from, farthest, over)));
-            }
         }
-        None
+        segment.expand();
+        let upper = upper.then(|| contact(segment, self.upper, 1.0)).flatten();
+        let lower = lower.then(|| contact(segment, self.lower, -1.0)).flatten();
+        match (upper, lower) {
+            (Some(up), Some(down)) if down < up => Some((Limit::Lower, down)),
+            (Some(up), _) => Some((Limit::Upper, up)),
+            (None, Some(down)) => Some((Limit::Lower, down)),
+            (None, None) => None,
+        }
     }
+
+    /// Whether these positions are so far out that a substep with them says
+    /// nothing about where it crossed a limit, nor perhaps about the motion:
+    /// an equation may be singular out there.
+    #[must_use]
+    pub fn are_left_behind_by(&self, nodes: RangeInclusive<f64>) -> bool {
+        let margin = 0.5 * (self.upper - self.lower);
+        *nodes.end() > self.upper + margin || *nodes.start() < 0.5 * self.lower
+    }
+}
+
+/// The offset at which the motion first reaches `level` from below (`sign` 1)
+/// or from above (`sign` −1).
+fn contact(segment: &Segment, level: f64, sign: f64) -> Option<f64> {
+    let over = |s: &Segment, t: f64| sign * (s.position(t) - level);
+    let toward = |s: &Segment, t: f64| sign * s.rate(t);
+    let part = segment.length() / PARTS as f64;
+    for i in 0..PARTS {
+        let (from, to) = (i as f64 * part, (i + 1) as f64 * part);
+        if over(segment, from) >= 0.0 {
+            return Some(from);
+        }
+        let turns = toward(segment, from) > 0.0 && toward(segment, to) < 0.0;
+        let farthest = if turns && over(segment, to) < 0.0 {
+            segment.crossing(from, to, toward)
+        } else {
+            to
+        };
+        if over(segment, farthest) >= 0.0 {
+            return Some(segment.crossing(from, farthest, over));
+        }
+    }
+    None
 }

@@ -4,12 +4,15 @@
 //! * [`segment`]: the polynomial that a substep leaves behind;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
+//! * [`orbit`]: a motion that repeats;
 //! * [`trajectory`]: segments one after another, reused where the motion repeats.
 
 pub mod collocation;
 pub mod double;
 pub mod limits;
 pub mod number;
+pub mod orbit;
+mod outcome;
 pub mod segment;
 pub mod step_control;
 mod tables;
@@ -52,6 +55,10 @@ pub trait LocalEquation {
 
     /// x'' under this load.
     fn acceleration<N: Number>(&self, load: Self::Load<N>, position: N, rate: N) -> N;
+
+    /// The longest substep in whose nodes the load is seen as it is: one that
+    /// alternates faster would be mistaken for a slow one.
+    fn longest_substep(&self) -> f64;
 
     /// The time in which the motion from here changes by itself, such as
     /// √(1/|∂f/∂x|), to guess a first substep.

@@ -109,8 +109,23 @@ impl Segment {
     /// x at `offset` after the begin of the segment.
     #[must_use]
     pub fn position(&self, offset: f64) -> f64 {
+        // Four sums in u⁴, since each operation of a single one waits for the last.
         let u = self.local(offset);
-        self.power.iter().rev().fold(0.0, |sum, p| sum * u + p)
+        let square = u * u;
+        let fourth = square * square;
+        let p = |k: usize| self.power[k];
+        let mut sums = [p(16), p(17), p(14), p(15)];
+        sums[0] = sums[0] * fourth + p(12);
+        sums[1] = sums[1] * fourth + p(13);
+        for k in [10, 6, 2] {
+            sums[2] = sums[2] * fourth + p(k);
+            sums[3] = sums[3] * fourth + p(k + 1);
+        }
+        for k in [8, 4, 0] {
+            sums[0] = sums[0] * fourth + p(k);
+            sums[1] = sums[1] * fourth + p(k + 1);
+        }
+        (sums[0] + square * sums[2]) + u * (sums[1] + square * sums[3])
     }
 
     /// x' at `offset` after the begin of the segment.

@@ -7,7 +7,7 @@ const ORDER: f64 = 18.0;
 /// Part of the tolerance to which the stages of a substep are solved: unlike
 /// the error between the nodes, what is left there adds up from substep to
 /// substep (1e3-fold in 2000 units of time of a resonant motion).
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 2e-4;
 
 /// Contraction above which a shorter substep is cheaper: it grows with the
 /// square of the length, and near 1 the iteration diverges.

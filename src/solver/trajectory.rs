@@ -10,6 +10,8 @@ use fearless_simd::Level;
 use super::collocation::{self, Substep};
 use super::double::Double;
 use super::limits::{Limit, Limits};
+use super::orbit::Orbit;
+pub use super::outcome::{Failure, Progress};
 use super::segment::Segment;
 use super::step_control::{StepControl, Verdict};
 use super::{Equation, LocalEquation, State};
@@ -18,7 +20,7 @@ use super::{Equation, LocalEquation, State};
 const CAPACITY: usize = 48;
 
 /// An orbit is repeated as long as the caller likes, and so is its error.
-const ORBIT_SHARE: f64 = 0.01;
+const ORBIT_SHARE: f64 = 0.001;
 
 /// First substep in units of the motion's time scale.
 const FIRST_SUBSTEP: f64 = 2.0;
@@ -28,39 +30,6 @@ const SHORTEST: f64 = 1e-12;
 
 /// Substeps that one call may take: about a second of work.
 const MOST_SUBSTEPS: u32 = 2_000_000;
-
-/// How far an advance came.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress {
-    /// As far as asked.
-    Whole,
-    /// To a limit, this long after the begin of the advance.
-    Stopped {
-        /// The limit.
-        limit: Limit,
-        /// The time from the begin of the advance to the limit.
-        after: f64,
-    },
-}
-
-/// Why an advance could not be finished. The trajectory stands where it came to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Failure {
-    /// Substeps became too short to go on.
-    SubstepTooShort {
-        /// The length of the last substep tried.
-        length: f64,
-        /// The time from the begin of the advance.
-        after: f64,
-    },
-    /// The advance needs more substeps than one call may take.
-    TooManySubsteps {
-        /// The number of substeps allowed.
-        most: u32,
-        /// The time from the begin of the advance.
-        after: f64,
-    },
-}
 
 /// A segment and the time at which it begins, counted from the trajectory's origin.
 #[derive(Clone, Copy, Debug)]
@@ -73,13 +42,6 @@ struct Piece {
 enum Present<'a> {
     At(State),
     Inside(&'a Segment, f64),
-}
-
-/// The motion between two turning points, which repeats there and back.
-#[derive(Clone, Copy, Debug)]
-struct Orbit {
-    first_turn: Double,
-    second_turn: Double,
 }
 
 /// A motion that is followed forward in time.
@@ -102,6 +64,8 @@ pub struct Trajectory {
     now: Double,
     /// −1 while an orbit is run back, else 1.
     direction: f64,
+    /// For less time than this the present stays in its piece and meets nothing.
+    slack: f64,
     first_turn: Option<Double>,
     orbit: Option<Orbit>,
     stop: Option<(Limit, Double)>,
@@ -109,6 +73,11 @@ pub struct Trajectory {
     next_length: Option<f64>,
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
+    /// Advances since the last restart.
+    advances: u32,
+    /// The last start was good for a single advance: the host changes the
+    /// equation at each communication point, and looking ahead is of no use.
+    restless: bool,
 }
 
 impl Trajectory {
@@ -131,12 +100,15 @@ impl Trajectory {
             index: 0,
             now: Double::ZERO,
             direction: 1.0,
+            slack: 0.0,
             first_turn: None,
             orbit: None,
             stop: None,
             at_rest: false,
             next_length: None,
             follows_orbits: true,
+            advances: 0,
+            restless: false,
         }
     }
 
@@ -158,10 +130,13 @@ impl Trajectory {
     pub fn restart(&mut self, time: Double) {
         self.start = self.state();
         self.origin = time;
+        self.restless = self.advances == 1;
+        self.advances = 0;
         self.count = 0;
         self.index = 0;
         self.now = Double::ZERO;
         self.direction = 1.0;
+        self.slack = 0.0;
         self.first_turn = None;
         self.orbit = None;
         self.stop = None;
@@ -201,7 +176,7 @@ impl Trajectory {
             return Present::At(self.start);
         }
         let Piece { begin, segment } = &self.pieces[self.index];
-        let offset = self.now.sub(*begin).value();
+        let offset = self.now.since(*begin);
         if offset == segment.length() {
             Present::At(segment.end())
         } else {
@@ -216,6 +191,12 @@ impl Trajectory {
     /// [`Failure`] where the integration cannot go on; the trajectory then
     /// stands at the end of the last substep.
     pub fn advance<E: Equation>(&mut self, equation: &E, step: f64) -> Result<Progress, Failure> {
+        self.advances = self.advances.saturating_add(1);
+        if step < self.slack {
+            self.slack -= step;
+            self.now = self.now.plus(self.direction * step);
+            return Ok(Progress::Whole);
+        }
         if let Some(orbit) = self.orbit {
             self.run_orbit(orbit, step);
             return Ok(Progress::Whole);
@@ -223,17 +204,17 @@ impl Trajectory {
         if self.at_rest {
             return Ok(Progress::Whole);
         }
-        let mut target = self.now.add(Double::new(step));
+        let mut target = self.now.plus(step);
         let mut substeps = 0;
         loop {
             if let Some((limit, at)) = self.stop
-                && target.sub(at).value() >= 0.0
+                && target.since(at) >= 0.0
             {
-                let after = step - target.sub(at).value();
+                let after = step - target.since(at);
                 self.arrive(at);
                 return Ok(Progress::Stopped { limit, after });
             }
-            if self.count > 0 && target.sub(self.end()).value() <= 0.0 {
+            if self.count > 0 && target.since(self.end()) <= 0.0 {
                 self.arrive(target);
                 return Ok(Progress::Whole);
             }
@@ -245,7 +226,8 @@ impl Trajectory {
                 });
             }
             substeps += 1;
-            let shift = match self.extend(equation) {
+            let rest = target.since(self.end());
+            let shift = match self.extend(equation, rest) {
                 Ok(shift) => shift,
                 Err(length) => {
                     let after = step - self.stand_at_end(target);
@@ -257,10 +239,10 @@ impl Trajectory {
                 return Ok(Progress::Whole);
             }
             if let Some(orbit) = self.orbit
-                && target.sub(orbit.second_turn).value() > 0.0
+                && target.since(orbit.second_turn()) > 0.0
             {
-                let rest = target.sub(orbit.second_turn).value();
-                self.arrive(orbit.second_turn);
+                let rest = target.since(orbit.second_turn());
+                self.arrive(orbit.second_turn());
                 self.run_orbit(orbit, rest);
                 return Ok(Progress::Whole);
             }
@@ -281,59 +263,48 @@ impl Trajectory {
     fn stand_at_end(&mut self, target: Double) -> f64 {
         let end = self.end();
         self.arrive(end);
-        target.sub(end).value()
+        target.since(end)
     }
 
     /// Moves the present to `target`, which lies in one of the pieces.
     fn arrive(&mut self, target: Double) {
         self.now = target;
-        while self.index + 1 < self.count
-            && target.sub(self.pieces[self.index + 1].begin).value() > 0.0
-        {
+        while self.index + 1 < self.count && target.since(self.pieces[self.index + 1].begin) > 0.0 {
             self.index += 1;
         }
-        while self.index > 0 && target.sub(self.pieces[self.index].begin).value() < 0.0 {
+        while self.index > 0 && target.since(self.pieces[self.index].begin) < 0.0 {
             self.index -= 1;
         }
-        let piece = &mut self.pieces[self.index];
-        let at_end = target.sub(piece.begin).value() == piece.segment.length();
-        if !at_end {
-            piece.segment.expand();
+        let Piece { begin, segment } = &mut self.pieces[self.index];
+        let offset = target.since(*begin);
+        let ahead = segment.length() - offset;
+        if ahead == 0.0 {
+            self.slack = 0.0;
+            return;
         }
+        segment.expand();
+        let mut room = if self.direction > 0.0 { ahead } else { offset };
+        if let Some(orbit) = &self.orbit {
+            room = room.min(orbit.time_to_turn(target, self.direction));
+        }
+        if let Some((_, at)) = self.stop {
+            room = room.min(at.since(target));
+        }
+        // Less than all of it, since it is counted down with rounding.
+        self.slack = room * (1.0 - 1e-9);
     }
 
     /// Moves the present along the orbit by the time `step`.
     fn run_orbit(&mut self, orbit: Orbit, step: f64) {
-        let half_period = orbit.second_turn.sub(orbit.first_turn);
-        let period = half_period.scale(2.0);
-        // The remainder of two f64 is exact; the low part of the period
-        // enters once for each whole period.
-        let mut rest = Double::new(step);
-        if step >= period.value() {
-            let whole = (step / period.high).floor();
-            let remainder = Double::new(step % period.high);
-            rest = remainder.sub(Double::new(whole * period.low));
-        }
-        let mut now = self.now.add(rest.scale(self.direction));
-        // Two reflections come back to the first direction; a third and fourth
-        // happen where rounding left a little more than a period.
-        for _ in 0..4 {
-            let turn = if now.sub(orbit.second_turn).value() > 0.0 {
-                orbit.second_turn
-            } else if now.sub(orbit.first_turn).value() < 0.0 && self.direction < 0.0 {
-                orbit.first_turn
-            } else {
-                break;
-            };
-            now = turn.scale(2.0).sub(now);
-            self.direction = -self.direction;
-        }
+        let (now, direction) = orbit.run(self.now, self.direction, step);
+        self.direction = direction;
         self.arrive(now);
     }
 
-    /// Adds one more piece. Returns by how much the origin was moved.
+    /// Adds one more piece; `rest` is the time still asked for. Returns by how
+    /// much the origin was moved.
     /// The error is the length of a substep that was too short to go on.
-    fn extend<E: Equation>(&mut self, equation: &E) -> Result<Double, f64> {
+    fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
         let autonomous = self.follows_orbits && equation.is_autonomous();
         let begin = self.end();
         let state = match self.count {
@@ -353,7 +324,8 @@ impl Trajectory {
         // new one is solved beside the old ones, which stand until it is done.
         let keep = autonomous && self.count < CAPACITY;
         let slot = self.count;
-        let substep = self.substep(&local, state, autonomous, slot)?;
+        let most = if self.restless { rest } else { f64::INFINITY };
+        let substep = self.substep(&local, state, autonomous, slot, most)?;
         let mut shift = Double::ZERO;
         if keep {
             self.count += 1;
@@ -371,7 +343,7 @@ impl Trajectory {
         piece.begin = begin.sub(shift);
         self.stop = self
             .limits
-            .first_contact(&mut piece.segment, substep.lowest..=substep.highest)
+            .first_contact(&mut piece.segment, substep.nodes())
             .map(|(limit, offset)| (limit, piece.begin.add(Double::new(offset))));
         if autonomous && self.stop.is_none() {
             self.look_for_turn(state.rate);
@@ -379,22 +351,26 @@ impl Trajectory {
         Ok(shift)
     }
 
-    /// Solves the next substep into a slot, as long as the tolerance allows.
+    /// Solves the next substep into a slot, as long as the tolerance allows but
+    /// no longer than `most`.
     fn substep<L: LocalEquation>(
         &mut self,
         local: &L,
         state: State,
         autonomous: bool,
         slot: usize,
+        most: f64,
     ) -> Result<Substep, f64> {
         let time_scale = local.time_scale(state);
-        let shortest = SHORTEST * time_scale;
+        let shortest = (SHORTEST * time_scale).min(0.5 * most);
         let mut control = self.control;
         if autonomous {
             control.tolerance *= ORBIT_SHARE;
         }
         let scale = state.position.abs();
-        let mut length = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);
+        let free = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);
+        let most = most.min(local.longest_substep());
+        let mut length = free.min(most);
         loop {
             if length.is_nan() || length <= shortest {
                 return Err(length);
@@ -403,12 +379,20 @@ impl Trajectory {
             let segment = &mut self.pieces[slot].segment;
             let solved = collocation::solve(self.level, local, state, length, settled, segment);
             let verdict = match &solved {
+                Ok(substep) if self.limits.are_left_behind_by(substep.nodes()) => {
+                    Verdict::Reject(0.5)
+                }
                 Ok(substep) => control.judge(substep.error / scale, substep.contraction),
                 Err(collocation::Diverged) => Verdict::Reject(0.5),
             };
             match (verdict, solved) {
                 (Verdict::Accept(factor), Ok(substep)) => {
-                    self.next_length = Some(length * factor);
+                    // A substep cut short says little about the next one.
+                    self.next_length = Some(if length == most {
+                        free
+                    } else {
+                        length * factor
+                    });
                     return Ok(substep);
                 }
                 (Verdict::Reject(factor) | Verdict::Accept(factor), _) => length *= factor,
@@ -427,11 +411,8 @@ impl Trajectory {
         let turn = begin.add(Double::new(offset));
         match self.first_turn {
             None => self.first_turn = Some(turn),
-            Some(first_turn) if turn.sub(first_turn).value() > 0.0 => {
-                self.orbit = Some(Orbit {
-                    first_turn,
-                    second_turn: turn,
-                });
+            Some(first_turn) if turn.since(first_turn) > 0.0 => {
+                self.orbit = Some(Orbit::between(first_turn, turn));
             }
             Some(_) => {}
         }

@@ -1,0 +1,89 @@
+//! A motion that repeats: between two turning points it runs there and back.
+
+use super::double::Double;
+
+/// The motion between two turning points of an autonomous, reversible equation.
+#[derive(Clone, Copy, Debug)]
+pub struct Orbit {
+    first_turn: Double,
+    second_turn: Double,
+    period: Double,
+}
+
+impl Orbit {
+    /// The orbit between two turning points, the first one before the second.
+    #[must_use]
+    pub fn between(first_turn: Double, second_turn: Double) -> Orbit {
+        Orbit {
+            first_turn,
+            second_turn,
+            period: second_turn.sub(first_turn).scale(2.0),
+        }
+    }
+
+    /// The later turning point.
+    #[must_use]
+    pub fn second_turn(&self) -> Double {
+        self.second_turn
+    }
+
+    /// The time from `now` to the next turning point.
+    #[must_use]
+    pub fn time_to_turn(&self, now: Double, direction: f64) -> f64 {
+        if direction > 0.0 {
+            self.second_turn.since(now)
+        } else {
+            now.since(self.first_turn)
+        }
+    }
+
+    /// Where between the turning points, and in which direction, the motion is
+    /// after the time `step`.
+    #[must_use]
+    pub fn run(&self, now: Double, mut direction: f64, step: f64) -> (Double, f64) {
+        let mut rest = Double::new(step);
+        if step >= self.period.high {
+            // The remainder of two f64 is exact; the low part of the period
+            // enters once for each whole period.
+            let whole = (step / self.period.high).floor();
+            rest = Double::new(step % self.period.high).plus(-(whole * self.period.low));
+        }
+        let mut now = now.add(rest.scale(direction));
+        // Two reflections come back to the first direction; a third and fourth
+        // happen where rounding left a little more than a period.
+        for _ in 0..4 {
+            let turn = if now.since(self.second_turn) > 0.0 {
+                self.second_turn
+            } else if direction < 0.0 && now.since(self.first_turn) < 0.0 {
+                self.first_turn
+            } else {
+                break;
+            };
+            now = turn.scale(2.0).sub(now);
+            direction = -direction;
+        }
+        (now, direction)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Turning points 1 and 4: period 6.
+    #[test]
+    fn time_is_folded_between_the_turning_points() {
+        let orbit = Orbit::between(Double::new(1.0), Double::new(4.0));
+        let from = Double::new(3.0);
+        for (step, place, direction) in [
+            (0.5, 3.5, 1.0),
+            (2.0, 3.0, -1.0),
+            (5.0, 2.0, 1.0),
+            (6.0, 3.0, 1.0),
+            (6e6 + 2.5, 2.5, -1.0),
+        ] {
+            let (now, along) = orbit.run(from, 1.0, step);
+            assert_eq!((now.value(), along), (place, direction), "step {step}");
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! How an advance of a trajectory ends.
+
+use super::limits::Limit;
+
+/// How far an advance came.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// As far as asked.
+    Whole,
+    /// To a limit, this long after the begin of the advance.
+    Stopped {
+        /// The limit.
+        limit: Limit,
+        /// The time from the begin of the advance to the limit.
+        after: f64,
+    },
+}
+
+/// Why an advance could not be finished. The trajectory stands where it came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Failure {
+    /// Substeps became too short to go on.
+    SubstepTooShort {
+        /// The length of the last substep tried.
+        length: f64,
+        /// The time from the begin of the advance.
+        after: f64,
+    },
+    /// The advance needs more substeps than one call may take.
+    TooManySubsteps {
+        /// The number of substeps allowed.
+        most: u32,
+        /// The time from the begin of the advance.
+        after: f64,
+    },
+}
