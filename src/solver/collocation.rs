@@ -211,11 +211,12 @@ fn first_guess<S: Simd>(
     (position, rate)
 }
 
-/// Between the nodes the position misses about this part of the last two
+/// Between the nodes the position misses less than this part of the last two
 /// Legendre coefficients: f is integrated twice, which divides degree 16 by
 /// some 16², and its series goes on falling. Measured on DC and AC motions with
-/// substeps of 6 to 14: 2 to 9 times this number.
-const NEGLECTED: f64 = 2000.0;
+/// substeps of 6 to 14: 5 to 18 times less, which leaves room for the rate,
+/// whose error is larger by the inverse of the motion's time scale.
+const NEGLECTED: f64 = 1000.0;
 
 #[inline(always)]
 fn array<S: Simd>(lanes: f64x8<S>) -> [f64; PAIRS] {
