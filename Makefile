@@ -5,6 +5,7 @@ PYTHON ?= python3
 VENV := .venv
 PYTHON_IN_VENV := $(VENV)/bin/python
 INSTALLED := $(VENV)/installed
+BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -18,12 +19,13 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu test stress env clean
+.PHONY: help run fmu test stress bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
+	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
 	@echo 'make fmu    build and pack the FMU only'
 	@echo 'make env    print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean  remove target and .venv'
@@ -56,6 +58,11 @@ stress: $(INSTALLED)
 	$(call heading,Stress tests)
 	@STRESS=long $(CARGO) test --test stress -- --show-output
 
+bench: $(INSTALLED) $(BENCHMARK_INSTALLED)
+	$(call heading,Benchmark)
+	@$(CARGO) build --release --locked --manifest-path benchmark/Cargo.toml --target-dir target/benchmark
+	@$(PYTHON_IN_VENV) benchmark/bench.py target/benchmark/release/benchmark $(BENCH)
+
 env: $(INSTALLED)
 	@$(info export $(ENVIRONMENT)):
 
@@ -74,4 +81,9 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
+	@touch $@
+
+$(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of the benchmark)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement benchmark/requirements.txt
 	@touch $@

@@ -19,8 +19,9 @@ use super::{Equation, LocalEquation, State};
 /// Pieces kept to find an orbit; an orbit near a saddle takes about 20.
 const CAPACITY: usize = 48;
 
-/// An orbit is repeated as long as the caller likes, and so is its error.
-const ORBIT_SHARE: f64 = 0.001;
+/// An orbit is repeated as long as the caller likes, and so is its error; the
+/// errors of ever new starts add up. Neither costs more than a sweep or two.
+const REPEATED_SHARE: f64 = 0.001;
 
 /// First substep in units of the motion's time scale.
 const FIRST_SUBSTEP: f64 = 2.0;
@@ -364,8 +365,8 @@ impl Trajectory {
         let time_scale = local.time_scale(state);
         let shortest = (SHORTEST * time_scale).min(0.5 * most);
         let mut control = self.control;
-        if autonomous {
-            control.tolerance *= ORBIT_SHARE;
+        if autonomous || self.restless {
+            control.tolerance *= REPEATED_SHARE;
         }
         let scale = state.position.abs();
         let free = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);

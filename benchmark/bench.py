@@ -1,0 +1,151 @@
+"""Run time against error of the actuator and its rivals: the command behind `make bench`.
+
+    python benchmark/bench.py PROGRAM [--rounds 5] [--milliseconds 10] [--cases abcde] [--records FOLDER]
+
+PROGRAM is the Rust side as make builds it. Each round goes through cases and methods in turn, so that a
+change of the machine's speed meets all of them; the medians over the rounds count. Each answer is held
+against the reference before it is timed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from pathlib import Path
+
+import plots
+import ratios
+import records
+from cases import CASES, ROOT
+from programs import C_FLAGS, Missing, cvode, rust
+
+FIGURES = ROOT / "docs" / "figures"
+
+
+def arguments() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("program", type=Path)
+    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--milliseconds", type=int, default=10, help="least time of a measurement")
+    parser.add_argument("--scipy-rounds", type=int, default=1)
+    parser.add_argument("--cases", default="".join(case.name for case in CASES))
+    parser.add_argument("--records", type=Path, help="folder instead of benchmark/records")
+    parser.add_argument("--figures", type=Path, default=FIGURES)
+    return parser.parse_args()
+
+
+class Rivals:
+    """What is there, and what is missing and why."""
+
+    def __init__(self, program: Path, folder: Path):
+        self.programs = [rust(program)]
+        self.versions = {"Rust rivals": self.programs[0].version}
+        self.missing: dict[str, str] = {}
+        self.heyoka = self.scipy = None
+        try:
+            found = cvode(folder)
+            self.programs.append(found)
+            self.versions["SUNDIALS"] = found.version
+        except Missing as reason:
+            self.missing["SUNDIALS CVODE"] = str(reason)
+        try:
+            from python_rivals import Heyoka
+
+            self.heyoka = Heyoka()
+            self.versions["heyoka"] = self.heyoka.version
+        except ImportError as reason:
+            self.missing["heyoka"] = str(reason)
+        try:
+            import scipy
+            from python_rivals import scipy_free
+
+            self.scipy = scipy_free
+            self.versions["SciPy"] = scipy.__version__
+        except ImportError as reason:
+            self.missing["SciPy"] = str(reason)
+
+    def free(self, case, options, number: int):
+        """All methods once, free-running."""
+        for program in self.programs:
+            yield from program.rows("free", case, options.milliseconds)
+        if self.heyoka:
+            yield from self.heyoka.free(case, 1e-3 * options.milliseconds)
+        if self.scipy and number <= options.scipy_rounds:
+            yield from self.scipy(case)
+
+    def steps(self, case, options):
+        """All methods once, in communication steps."""
+        for program in self.programs:
+            yield from program.rows("steps", case, options.milliseconds)
+        if self.heyoka:
+            yield from self.heyoka.steps(case, 1e-3 * options.milliseconds)
+
+
+def settings(options, rivals: Rivals) -> dict[str, str]:
+    compiled = rivals.heyoka.compile_seconds if rivals.heyoka else []
+    return {
+        "rounds": f"{options.rounds}, SciPy {options.scipy_rounds}; methods in turn in each, medians over them",
+        "least time of a measurement": f"{options.milliseconds} ms",
+        "error": "largest of stretch and rate at the times of the reference",
+        "Rust side": "opt-level 3, lto fat, codegen-units 1; no target-cpu beyond the environment's RUSTFLAGS",
+        "C side": " ".join(C_FLAGS),
+        "heyoka compiles": (
+            f"{min(compiled):.2f} to {max(compiled):.2f} s each, not counted; time of an idle call taken off"
+            if compiled
+            else "-"
+        ),
+        **rivals.versions,
+        "missing": "; ".join(f"{name}: {reason}" for name, reason in rivals.missing.items()) or "none",
+    }
+
+
+def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict]]:
+    """Raw rows of both patterns."""
+    free, steps = [], []
+    cases = [case for case in CASES if case.name in options.cases]
+    for number in range(1, options.rounds + 1):
+        for case in cases:
+            print(f"round {number} of {options.rounds}, case {case.name}", flush=True)
+            about = {"round": number, "case": case.name}
+            free += [{**about, **row} for row in rivals.free(case, options, number)]
+            if case.stepped:
+                steps += [{**about, **row} for row in rivals.steps(case, options)]
+    return free, steps
+
+
+def main() -> None:
+    options = arguments()
+    with tempfile.TemporaryDirectory() as folder:
+        rivals = Rivals(options.program, Path(folder))
+        for name, reason in rivals.missing.items():
+            print(f"missing: {name}: {reason}")
+        facts = records.machine()
+        free, steps = measure(options, rivals)
+    facts |= settings(options, rivals)
+
+    target = records.folder(facts, options.records)
+    best_free, best_steps = records.medians(free), records.medians(steps)
+    written = [
+        records.write(target / "work_precision_raw.csv", facts, free),
+        records.write(target / "work_precision.csv", facts, best_free),
+    ]
+    text = ratios.table(best_free)
+    written.append(plots.work_precision(best_free, options.figures / "benchmark_work_precision.png"))
+    if steps:
+        written.append(records.write(target / "co_simulation_raw.csv", facts, steps))
+        written.append(records.write(target / "co_simulation.csv", facts, best_steps))
+        written.append(plots.co_simulation(best_steps, options.figures / "benchmark_co_simulation.png"))
+        text += "\n" + ratios.step_table(best_steps)
+    about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
+    tables = target / "tables.md"
+    tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")
+    print("\n" + text)
+    for row in best_free + best_steps:
+        if row["note"].startswith(("failed", "not timed")):
+            step = f", step {row['step']}" if row["step"] not in ("", None) else ""
+            print(f"case {row['case']}, {row['method']}, tolerance {row['tolerance']}{step}: {row['note']}")
+    print("\nwritten:", *(str(path) for path in [*written, tables]), sep="\n  ")
+
+
+if __name__ == "__main__":
+    main()

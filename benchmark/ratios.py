@@ -1,0 +1,98 @@
+"""Times at equal error, read off the curves, and their ratios to heyoka."""
+
+from __future__ import annotations
+
+import math
+
+from cases import CASES
+
+LEVELS = (1e-6, 1e-9, 1e-12)
+RIVAL = "heyoka"
+FLOOR = 1e-17
+"""An error of 0 is drawn and interpolated as this."""
+
+
+def curve(rows: list[dict], case: str, method: str) -> list[tuple[float, float]]:
+    """(error, nanoseconds) of a method, sorted by error, without what is both slower and less accurate."""
+    points = [
+        (max(float(row["error"]), FLOOR), float(row["nanoseconds"]))
+        for row in rows
+        if row["case"] == case and row["method"] == method and row["nanoseconds"] not in ("", None)
+    ]
+    front: list[tuple[float, float]] = []
+    for error, nanoseconds in sorted(points):
+        if not front or nanoseconds < front[-1][1]:
+            front.append((error, nanoseconds))
+    return front
+
+
+def time_at(front: list[tuple[float, float]], error: float) -> float | None:
+    """Nanoseconds at an error, on straight lines in the logarithms; None where the method is never that
+    accurate. A method that is always more accurate is taken at its fastest."""
+    if not front or front[0][0] > error:
+        return None
+    for (e0, t0), (e1, t1) in zip(front, front[1:]):
+        if e0 <= error < e1:
+            part = math.log(error / e0) / math.log(e1 / e0)
+            return t0 * (t1 / t0) ** part
+    return front[-1][1]
+
+
+def methods(rows: list[dict]) -> list[str]:
+    return list(dict.fromkeys(row["method"] for row in rows))
+
+
+def table(rows: list[dict]) -> str:
+    """Markdown: for each error, ns per unit of time, and in brackets how often heyoka's time fits into it
+    or, above 1, how many times faster than heyoka."""
+    blocks = []
+    names = [case.name for case in CASES]
+    for level in LEVELS:
+        lines = [f"| error {level:g} | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
+        for method in methods(rows):
+            cells = []
+            for case in names:
+                own = time_at(curve(rows, case, method), level)
+                rival = time_at(curve(rows, case, RIVAL), level)
+                if own is None:
+                    cells.append("–")
+                elif rival is None:
+                    cells.append(f"{own:.3g}")
+                else:
+                    cells.append(f"{own:.3g} ({rival / own:.2g}×)")
+            if any(cell != "–" for cell in cells):
+                lines.append(f"| {method} | " + " | ".join(cells) + " |")
+        blocks.append("\n".join(lines))
+    note = (
+        "Nanoseconds for each unit of time at equal error; in brackets how many times faster than heyoka. "
+        "Interpolated on the log-log curves; – where a method is never that accurate or was lost."
+    )
+    return note + "\n\n" + "\n\n".join(blocks) + "\n"
+
+
+def step_table(rows: list[dict]) -> str:
+    """Markdown: nanoseconds a call and error, one row a method and kind of input, one column a step."""
+    blocks = []
+    for case in dict.fromkeys(row["case"] for row in rows):
+        own = [row for row in rows if row["case"] == case]
+        steps = sorted({float(row["step"]) for row in own})
+        lines = [f"| case {case}, step | " + " | ".join(f"{step:g}" for step in steps) + " |"]
+        lines.append("|---" * (len(steps) + 1) + "|")
+        kinds = dict.fromkeys((row["method"], row["inputs"], float(row["tolerance"])) for row in own)
+        for method, inputs, tolerance in kinds:
+            found = {
+                float(row["step"]): row
+                for row in own
+                if (row["method"], row["inputs"], float(row["tolerance"])) == (method, inputs, tolerance)
+            }
+            cells = [_cell(found.get(step)) for step in steps]
+            lines.append(f"| {method}, inputs {inputs}, tolerance {tolerance:g} | " + " | ".join(cells) + " |")
+        blocks.append("\n".join(lines))
+    return "Nanoseconds for each call, with the error in brackets.\n\n" + "\n\n".join(blocks) + "\n"
+
+
+def _cell(row: dict | None) -> str:
+    if row is None or row["nanoseconds"] in ("", None):
+        return "–"
+    error = f" ({float(row['error']):.0e})" if row["error"] not in ("", None) else ""
+    return f"{float(row['nanoseconds']):.3g}{error}"

@@ -1,0 +1,191 @@
+//! A host of the FMI functions: what a simulation tool does, without the tool.
+
+use std::ffi::{CString, c_char, c_void};
+use std::hint::black_box;
+use std::ptr::{null, null_mut};
+
+use dielectric_elastomer_actuator::abi;
+use dielectric_elastomer_actuator::description::GUID;
+use dielectric_elastomer_actuator::variables::value_reference;
+use fmi::fmi2::binding::{
+    fmi2CallbackFunctions, fmi2Component, fmi2Real, fmi2Status, fmi2Status_fmi2OK,
+    fmi2Type_fmi2CoSimulation, fmi2ValueReference,
+};
+
+use crate::case::Case;
+
+type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, i32) -> fmi2Status;
+type GetReal = unsafe extern "C" fn(
+    fmi2Component,
+    *const fmi2ValueReference,
+    usize,
+    *mut fmi2Real,
+) -> fmi2Status;
+type SetReal = unsafe extern "C" fn(
+    fmi2Component,
+    *const fmi2ValueReference,
+    usize,
+    *const fmi2Real,
+) -> fmi2Status;
+type SetDerivatives = unsafe extern "C" fn(
+    fmi2Component,
+    *const fmi2ValueReference,
+    usize,
+    *const i32,
+    *const fmi2Real,
+) -> fmi2Status;
+
+unsafe extern "C" fn silent(
+    _environment: *mut c_void,
+    _name: *const c_char,
+    _status: fmi2Status,
+    _category: *const c_char,
+    _message: *const c_char,
+) {
+}
+
+/// An instance in step mode, called through pointers as in a shared library.
+pub struct Host {
+    component: fmi2Component,
+    do_step: DoStep,
+    get_real: GetReal,
+    set_real: SetReal,
+    set_derivatives: SetDerivatives,
+    /// Callbacks must live as long as the instance.
+    _callbacks: Box<fmi2CallbackFunctions>,
+    phi: u32,
+    outputs: [u32; 2],
+}
+
+fn reference(name: &str) -> u32 {
+    value_reference(name).unwrap_or_else(|| panic!("no variable {name}"))
+}
+
+impl Host {
+    /// An initialized instance. Without `built_in` the alternating voltage is
+    /// left to the caller.
+    pub fn new(case: &Case, tolerance: f64, built_in: bool) -> Host {
+        let guid = CString::new(GUID).expect("no NUL");
+        let named = silent
+            as unsafe extern "C" fn(
+                *mut c_void,
+                *const c_char,
+                fmi2Status,
+                *const c_char,
+                *const c_char,
+            );
+        let callbacks = Box::new(fmi2CallbackFunctions {
+            // SAFETY: a callee on these platforms may ignore variadic arguments.
+            logger: Some(unsafe { std::mem::transmute::<*const (), _>(named as *const ()) }),
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: null_mut(),
+        });
+        // SAFETY: all pointers live during the call, the callbacks longer.
+        let component = unsafe {
+            abi::fmi2Instantiate(
+                c"actuator".as_ptr(),
+                fmi2Type_fmi2CoSimulation,
+                guid.as_ptr(),
+                null(),
+                &*callbacks,
+                0,
+                0,
+            )
+        };
+        assert!(!component.is_null());
+        let host = Host {
+            component,
+            do_step: black_box(abi::fmi2DoStep as DoStep),
+            get_real: black_box(abi::fmi2GetReal as GetReal),
+            set_real: black_box(abi::fmi2SetReal as SetReal),
+            set_derivatives: black_box(abi::fmi2SetRealInputDerivatives as SetDerivatives),
+            _callbacks: callbacks,
+            phi: reference("phi"),
+            outputs: [reference("lambda"), reference("lambda_dot")],
+        };
+        let [gamma, tau, elasticity] = case.surface;
+        for (name, value) in [
+            ("c", case.aspect),
+            ("gamma_s", gamma),
+            ("tau_s", tau),
+            ("E_s", elasticity),
+            ("S", case.prestress),
+            ("phi", case.voltage),
+            ("phi_ac", if built_in { case.amplitude } else { 0.0 }),
+            ("omega_ac", case.frequency),
+        ] {
+            // SAFETY: a live component and one value.
+            let status = unsafe { abi::fmi2SetReal(component, &reference(name), 1, &value) };
+            assert_eq!(status, fmi2Status_fmi2OK, "{name}");
+        }
+        // SAFETY: a live component.
+        let statuses = unsafe {
+            [
+                abi::fmi2SetupExperiment(component, 1, tolerance, 0.0, 0, 0.0),
+                abi::fmi2EnterInitializationMode(component),
+                abi::fmi2ExitInitializationMode(component),
+            ]
+        };
+        assert_eq!(statuses, [fmi2Status_fmi2OK; 3]);
+        host
+    }
+
+    #[inline]
+    pub fn step(&self, time: f64, step: f64) {
+        // SAFETY: a live component.
+        let status = unsafe { (self.do_step)(self.component, time, step, 1) };
+        assert!(status == fmi2Status_fmi2OK);
+    }
+
+    /// λ, one round trip.
+    #[inline]
+    pub fn stretch(&self) -> f64 {
+        let mut value = 0.0;
+        // SAFETY: a live component and one value.
+        unsafe { (self.get_real)(self.component, &self.outputs[0], 1, &mut value) };
+        value
+    }
+
+    /// λ and dλ/dt.
+    pub fn state(&self) -> [f64; 2] {
+        let mut values = [0.0; 2];
+        // SAFETY: a live component and two values.
+        unsafe {
+            (self.get_real)(
+                self.component,
+                self.outputs.as_ptr(),
+                2,
+                values.as_mut_ptr(),
+            )
+        };
+        values
+    }
+
+    /// Sets the voltage and its derivatives up to `order`.
+    #[inline]
+    pub fn set(&self, derivatives: &[f64; 4], order: usize) {
+        // SAFETY: a live component and one value; then `order` of each.
+        unsafe {
+            (self.set_real)(self.component, &self.phi, 1, &derivatives[0]);
+            if order > 0 {
+                let references = [self.phi; 3];
+                (self.set_derivatives)(
+                    self.component,
+                    references.as_ptr(),
+                    order,
+                    [1, 2, 3].as_ptr(),
+                    derivatives[1..].as_ptr(),
+                );
+            }
+        }
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        // SAFETY: freed once.
+        unsafe { abi::fmi2FreeInstance(self.component) };
+    }
+}

@@ -1,0 +1,86 @@
+//! The actuator's own integrator, called from Rust.
+
+use dielectric_elastomer_actuator::actuator::drive::Harmonic;
+use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
+use dielectric_elastomer_actuator::solver::State;
+use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::limits::Limits;
+use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
+use fearless_simd::Level;
+
+use crate::case::{Case, Pair};
+use crate::free::Method;
+
+/// The tolerances of `fmi2SetupExperiment`, and the promise to stay within ten of them.
+const fn method(name: &'static str, solve: crate::free::Solve) -> Method {
+    Method {
+        name,
+        solve,
+        exponents: [3, 14],
+        allowed: 10.0,
+    }
+}
+
+pub const METHODS: &[Method] = &[
+    method("ours", |case, tolerance, states| {
+        follow(case, start(tolerance), states)
+    }),
+    method("ours without orbit reuse", |case, tolerance, states| {
+        follow(case, start(tolerance).without_orbits(), states)
+    }),
+    method("ours baseline SIMD", |case, tolerance, states| {
+        follow(case, start(tolerance).with_level(Level::baseline()), states)
+    }),
+    method(
+        "ours baseline SIMD without orbit reuse",
+        |case, tolerance, states| {
+            let trajectory = start(tolerance).with_level(Level::baseline());
+            follow(case, trajectory.without_orbits(), states)
+        },
+    ),
+];
+
+fn start(tolerance: f64) -> Trajectory {
+    let rest = State {
+        position: 1.0,
+        rate: 0.0,
+    };
+    let limits = Limits {
+        lower: 0.05,
+        upper: 10.0,
+    };
+    Trajectory::new(rest, Double::ZERO, limits, tolerance)
+}
+
+fn motion(case: &Case) -> Motion {
+    let [surface_energy, surface_tension, surface_elasticity] = case.surface;
+    let mut drive = Drive::constant(case.voltage, case.prestress);
+    drive.harmonic = Harmonic {
+        amplitude: case.amplitude,
+        frequency: case.frequency,
+        phase: 0.0,
+    };
+    Motion {
+        coefficients: Coefficients::fold(&Parameters {
+            aspect: case.aspect,
+            surface_energy,
+            surface_tension,
+            surface_elasticity,
+        }),
+        drive,
+    }
+}
+
+fn follow(case: &Case, mut trajectory: Trajectory, states: &mut Vec<Pair>) -> Result<(), String> {
+    let motion = motion(case);
+    let mut before = 0.0;
+    for &time in &case.times {
+        match trajectory.advance(&motion, time - before) {
+            Ok(Progress::Whole) => {}
+            other => return Err(format!("{other:?}")),
+        }
+        states.push([trajectory.position(), trajectory.rate()]);
+        before = time;
+    }
+    Ok(())
+}
