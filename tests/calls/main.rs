@@ -1,0 +1,264 @@
+//! The C functions, called as a host would: every function in every phase
+//! against the table of the standard, hostile arguments, and random orders.
+//!
+//! Safety of all calls: components are live, and arrays are as long as their
+//! counts say, or null where that is what is tested.
+#![allow(unsafe_code, clippy::undocumented_unsafe_blocks)]
+
+mod random;
+mod refusals;
+mod runs;
+
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::ptr::{null, null_mut};
+use std::sync::Mutex;
+
+use dielectric_elastomer_actuator::abi::*;
+use dielectric_elastomer_actuator::description::GUID;
+use dielectric_elastomer_actuator::variables::value_reference;
+use fmi::fmi2::binding::*;
+
+const OK: fmi2Status = fmi2Status_fmi2OK;
+const WARNING: fmi2Status = fmi2Status_fmi2Warning;
+const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
+const ERROR: fmi2Status = fmi2Status_fmi2Error;
+
+fn reference(name: &str) -> u32 {
+    value_reference(name).unwrap_or_else(|| panic!("no variable {name}"))
+}
+
+type Log = Mutex<Vec<String>>;
+
+/// Stands in for the host's variadic logger: on the platforms of these tests a
+/// variadic callee may ignore what follows its named arguments.
+unsafe extern "C" fn logger(
+    environment: *mut c_void,
+    _name: *const c_char,
+    _status: fmi2Status,
+    category: *const c_char,
+    message: *const c_char,
+) {
+    let (log, category, message) = unsafe {
+        (
+            &*environment.cast::<Log>(),
+            CStr::from_ptr(category),
+            CStr::from_ptr(message),
+        )
+    };
+    let line = format!(
+        "{}: {}",
+        category.to_string_lossy(),
+        message.to_string_lossy()
+    );
+    log.lock().expect("one thread").push(line);
+}
+
+/// An instance and what it told its host.
+struct Host {
+    component: fmi2Component,
+    log: Box<Log>,
+}
+
+impl Host {
+    fn with(name: *const c_char, kind: fmi2Type, guid: *const c_char) -> Host {
+        let log = Box::new(Log::default());
+        let named = logger
+            as unsafe extern "C" fn(
+                *mut c_void,
+                *const c_char,
+                fmi2Status,
+                *const c_char,
+                *const c_char,
+            );
+        let callbacks = fmi2CallbackFunctions {
+            // See `logger`.
+            logger: unsafe {
+                std::mem::transmute::<*const (), fmi2CallbackLogger>(named as *const ())
+            },
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: (&raw const *log).cast_mut().cast(),
+        };
+        let component = unsafe { fmi2Instantiate(name, kind, guid, null(), &callbacks, 0, 1) };
+        Host { component, log }
+    }
+
+    fn new() -> Host {
+        let guid = CString::new(GUID).expect("no NUL");
+        let host = Host::with(
+            c"actuator".as_ptr(),
+            fmi2Type_fmi2CoSimulation,
+            guid.as_ptr(),
+        );
+        assert!(!host.component.is_null());
+        host
+    }
+
+    fn in_phase(phase: &str) -> Host {
+        let host = Host::new();
+        let c = host.component;
+        unsafe {
+            if phase == "instantiated" {
+                return host;
+            }
+            assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, f64::NAN), OK);
+            assert_eq!(fmi2EnterInitializationMode(c), OK);
+            if phase == "initialization" {
+                return host;
+            }
+            if phase == "failed" {
+                assert_eq!(host.set("phi", 0.7), OK);
+                assert_eq!(fmi2SetInteger(c, &reference("on_pull_in"), 1, &2), OK);
+            }
+            assert_eq!(fmi2ExitInitializationMode(c), OK);
+            match phase {
+                "failed" => assert_eq!(fmi2DoStep(c, 0.0, 50.0, 1), DISCARD),
+                "terminated" => assert_eq!(fmi2Terminate(c), OK),
+                _ => assert_eq!(phase, "stepping"),
+            }
+        }
+        host
+    }
+
+    fn set(&self, name: &str, value: f64) -> fmi2Status {
+        unsafe { fmi2SetReal(self.component, &reference(name), 1, &value) }
+    }
+
+    fn get(&self, name: &str) -> f64 {
+        let mut value = f64::NAN;
+        let status = unsafe { fmi2GetReal(self.component, &reference(name), 1, &mut value) };
+        assert_eq!(status, OK, "{:?}", self.last_line());
+        value
+    }
+
+    fn step(&self, time: f64, step: f64) -> fmi2Status {
+        unsafe { fmi2DoStep(self.component, time, step, 1) }
+    }
+
+    fn last_line(&self) -> String {
+        self.log
+            .lock()
+            .expect("one thread")
+            .last()
+            .cloned()
+            .unwrap_or_default()
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        unsafe { fmi2FreeInstance(self.component) };
+    }
+}
+
+const PHASES: [&str; 5] = [
+    "instantiated",
+    "initialization",
+    "stepping",
+    "failed",
+    "terminated",
+];
+
+type Function = fn(fmi2Component) -> fmi2Status;
+
+/// The table of FMI 2.0.4, section 4.2.4 (co-simulation): the phases in which
+/// each function is allowed; "" for those whose capability is not declared.
+const TABLE: [(&str, Function, &str); 16] = [
+    // SAFETY, for all rows: a live component, and arrays as long as the counts.
+    (
+        "fmi2SetDebugLogging",
+        |c| unsafe { fmi2SetDebugLogging(c, 1, 0, null()) },
+        "instantiated initialization stepping failed terminated",
+    ),
+    (
+        "fmi2SetupExperiment",
+        |c| unsafe { fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0) },
+        "instantiated",
+    ),
+    (
+        "fmi2EnterInitializationMode",
+        |c| unsafe { fmi2EnterInitializationMode(c) },
+        "instantiated",
+    ),
+    (
+        "fmi2ExitInitializationMode",
+        |c| unsafe { fmi2ExitInitializationMode(c) },
+        "initialization",
+    ),
+    (
+        "fmi2Terminate",
+        |c| unsafe { fmi2Terminate(c) },
+        "stepping failed",
+    ),
+    (
+        "fmi2Reset",
+        |c| unsafe { fmi2Reset(c) },
+        "instantiated initialization stepping failed terminated",
+    ),
+    (
+        "fmi2GetReal",
+        |c| unsafe { fmi2GetReal(c, &0, 1, &mut 0.0) },
+        "initialization stepping failed terminated",
+    ),
+    (
+        "fmi2GetBoolean",
+        |c| unsafe { fmi2GetBoolean(c, &reference("pulled_in"), 1, &mut 0) },
+        "initialization stepping failed terminated",
+    ),
+    (
+        "fmi2SetReal",
+        |c| unsafe { fmi2SetReal(c, &0, 1, &0.1) },
+        "instantiated initialization stepping",
+    ),
+    (
+        "fmi2SetInteger",
+        |c| unsafe { fmi2SetInteger(c, &reference("on_pull_in"), 1, &1) },
+        "instantiated initialization",
+    ),
+    (
+        "fmi2SetRealInputDerivatives",
+        |c| unsafe { fmi2SetRealInputDerivatives(c, &0, 1, &1, &0.1) },
+        "instantiated initialization stepping",
+    ),
+    (
+        "fmi2DoStep",
+        |c| unsafe { fmi2DoStep(c, 0.0, 0.1, 1) },
+        "stepping",
+    ),
+    (
+        "fmi2GetRealStatus",
+        |c| unsafe { fmi2GetRealStatus(c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut 0.0) },
+        "stepping failed terminated",
+    ),
+    (
+        "fmi2GetBooleanStatus",
+        |c| unsafe { fmi2GetBooleanStatus(c, fmi2StatusKind_fmi2Terminated, &mut 0) },
+        "stepping failed terminated",
+    ),
+    (
+        "fmi2GetFMUstate",
+        |c| unsafe { fmi2GetFMUstate(c, &mut null_mut()) },
+        "",
+    ),
+    ("fmi2CancelStep", |c| unsafe { fmi2CancelStep(c) }, ""),
+];
+
+#[test]
+fn each_function_is_allowed_in_the_phases_of_the_standard_only() {
+    for (name, function, allowed) in TABLE {
+        for phase in PHASES {
+            let host = Host::in_phase(phase);
+            let expected = if allowed.split(' ').any(|p| p == phase) {
+                OK
+            } else {
+                ERROR
+            };
+            let status = function(host.component);
+            assert_eq!(status, expected, "{name} in {phase}: {}", host.last_line());
+            if status == ERROR {
+                assert!(host.last_line().contains(name), "{}", host.last_line());
+            }
+        }
+    }
+}
