@@ -60,9 +60,8 @@ impl View<'_> {
         if self.held().is_some() {
             return 0.0;
         }
-        let coefficients = Coefficients::fold(&self.scene.parameters);
         motion::acceleration(
-            &coefficients,
+            &self.coefficients(),
             self.load(),
             self.stretch(),
             self.stretch_rate(),
@@ -127,36 +126,32 @@ impl View<'_> {
             position: self.stretch(),
             rate: self.stretch_rate(),
         };
-        let coefficients = Coefficients::fold(&self.scene.parameters);
-        motion::energy(&coefficients, self.load(), state)
+        motion::energy(&self.coefficients(), self.load(), state)
     }
 
     /// The dynamic pull-in threshold at the present prestress.
     #[must_use]
     pub fn dynamic_threshold(&self) -> Option<Threshold> {
-        pull_in::dynamic(
-            &Coefficients::fold(&self.scene.parameters),
-            self.prestress(),
-        )
+        pull_in::dynamic(&self.coefficients(), self.prestress())
     }
 
     /// The static pull-in threshold at the present prestress.
     #[must_use]
     pub fn static_threshold(&self) -> Option<Threshold> {
-        pull_in::quasi_static(
-            &Coefficients::fold(&self.scene.parameters),
-            self.prestress(),
-        )
+        pull_in::quasi_static(&self.coefficients(), self.prestress())
     }
 
     /// How much the voltage may still grow before the actuator, from rest at
     /// λ = 1, is pulled in or nothing bounds its stretch; +∞ where neither happens.
     #[must_use]
     pub fn pull_in_margin(&self) -> f64 {
-        let coefficients = Coefficients::fold(&self.scene.parameters);
         let fold = self.dynamic_threshold().map(|threshold| threshold.voltage);
-        fold.or_else(|| pull_in::escape_voltage(&coefficients, self.prestress()))
+        fold.or_else(|| pull_in::escape_voltage(&self.coefficients(), self.prestress()))
             .map_or(f64::INFINITY, |limit| limit - self.total_voltage().abs())
+    }
+
+    fn coefficients(&self) -> Coefficients {
+        Coefficients::fold(&self.scene.parameters)
     }
 
     fn load(&self) -> Load<f64> {

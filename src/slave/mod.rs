@@ -16,7 +16,7 @@ pub use values::Type;
 use crate::scene::Scene;
 use crate::solver::double::Double;
 use crate::variables::{Access, VARIABLES};
-use crate::view::{Collapse, View};
+use crate::view::View;
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -205,12 +205,6 @@ impl Instance {
     #[must_use]
     pub fn wants_to_terminate(&self) -> bool {
         self.phase == Phase::StepFailed
-    }
-
-    /// When and where the actuator collapsed, if it has.
-    #[must_use]
-    pub fn collapse(&self) -> Option<Collapse> {
-        self.view().collapse
     }
 
     /// Sets derivatives of inputs, each given by value reference, order and value.

@@ -59,7 +59,10 @@ impl Double {
     /// `self − other`.
     #[must_use]
     pub const fn sub(self, other: Double) -> Double {
-        self.add(other.scale(-1.0))
+        self.add(Double {
+            high: -other.high,
+            low: -other.low,
+        })
     }
 
     /// `self · other`.

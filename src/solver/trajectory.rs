@@ -256,7 +256,7 @@ impl Trajectory {
             return Double::ZERO;
         }
         let last = &self.pieces[self.count - 1];
-        last.begin.add(Double::new(last.segment.length()))
+        last.begin.plus(last.segment.length())
     }
 
     /// Moves the present to the end of the last piece and returns the time
@@ -270,6 +270,10 @@ impl Trajectory {
     /// Moves the present to `target`, which lies in one of the pieces.
     fn arrive(&mut self, target: Double) {
         self.now = target;
+        if self.count == 0 {
+            // Not even the first substep could be solved.
+            return;
+        }
         while self.index + 1 < self.count && target.since(self.pieces[self.index + 1].begin) > 0.0 {
             self.index += 1;
         }
@@ -345,7 +349,7 @@ impl Trajectory {
         self.stop = self
             .limits
             .first_contact(&mut piece.segment, substep.nodes())
-            .map(|(limit, offset)| (limit, piece.begin.add(Double::new(offset))));
+            .map(|(limit, offset)| (limit, piece.begin.plus(offset)));
         if autonomous && self.stop.is_none() {
             self.look_for_turn(state.rate);
         }
@@ -409,7 +413,7 @@ impl Trajectory {
         }
         segment.expand();
         let offset = segment.crossing(0.0, segment.length(), Segment::rate);
-        let turn = begin.add(Double::new(offset));
+        let turn = begin.plus(offset);
         match self.first_turn {
             None => self.first_turn = Some(turn),
             Some(first_turn) if turn.since(first_turn) > 0.0 => {
