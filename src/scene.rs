@@ -26,6 +26,8 @@ pub struct Scene {
     pub limits: Limits,
     /// What happens at a limit.
     pub on_pull_in: OnPullIn,
+    /// Whether the extremes of the stretch are recorded.
+    pub record_extremes: bool,
     /// Voltage and prestress.
     pub drive: Drive,
 }
@@ -48,6 +50,7 @@ impl Scene {
             upper: 0.0,
         },
         on_pull_in: OnPullIn::Hold,
+        record_extremes: false,
         drive: Drive {
             since: Double::ZERO,
             voltage: Polynomial::constant(0.0),

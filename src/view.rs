@@ -7,6 +7,7 @@ use crate::pull_in::{self, Threshold};
 use crate::scene::{OnPullIn, Scene};
 use crate::solver::State;
 use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 use crate::solver::trajectory::Trajectory;
 
@@ -66,6 +67,12 @@ impl View<'_> {
             self.stretch(),
             self.stretch_rate(),
         )
+    }
+
+    /// The extremes of the stretch since the start, where they are recorded.
+    #[must_use]
+    pub fn extremes(&self) -> Option<Extremes> {
+        self.trajectory?.extremes()
     }
 
     /// The limit at which the actuator is held. Where the simulation ends

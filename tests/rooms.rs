@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 /// Room, the rooms of ours it may import, the foreign crates it may import.
 const LAW: &[(&str, &[&str], &[&str])] = &[
-    ("solver", &[], &["fearless_simd", "nalgebra"]),
+    ("solver", &[], &["fearless_simd", "nalgebra", "serde"]),
     ("actuator", &["solver"], &[]),
     ("pull_in", &["actuator"], &[]),
     ("scene", &["actuator", "solver"], &[]),

@@ -30,10 +30,14 @@ pub struct Run {
 
 impl Run {
     pub(super) fn new(scene: &Scene, time: Double, tolerance: f64) -> Run {
+        let mut trajectory = Trajectory::new(scene.start, time, scene.limits, tolerance);
+        if scene.record_extremes {
+            trajectory = trajectory.recording_extremes();
+        }
         Run {
             time,
             motion: scene.motion(),
-            trajectory: Trajectory::new(scene.start, time, scene.limits, tolerance),
+            trajectory,
             collapse: None,
             stale: false,
         }

@@ -9,8 +9,10 @@
 //! quotients. Range: products of numbers above about 1e300 overflow in the
 //! splitting; neither use comes near.
 
+use serde::{Deserialize, Serialize};
+
 /// A double-length number `high + low` with `|low|` at most half an ulp of `high`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Double {
     /// The number rounded to `f64`.
     pub high: f64,

@@ -2,10 +2,12 @@
 
 use std::ops::RangeInclusive;
 
-use super::segment::Segment;
+use serde::{Deserialize, Serialize};
+
+use super::segment::{PARTS, Segment};
 
 /// The range of positions inside which the motion is followed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limits {
     /// The motion stops where it comes down to this position.
     pub lower: f64,
@@ -14,7 +16,7 @@ pub struct Limits {
 }
 
 /// Which limit has been reached.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Limit {
     /// The lower one.
     Lower,
@@ -22,10 +24,13 @@ pub enum Limit {
     Upper,
 }
 
-/// Parts of a segment in each of which the motion turns at most once.
-const PARTS: usize = 32;
-
 impl Limits {
+    /// Whether there is room between the limits.
+    #[must_use]
+    pub fn are_sound(&self) -> bool {
+        self.lower < self.upper && self.lower.is_finite() && self.upper.is_finite()
+    }
+
     /// The limit that the motion first meets in the segment, and the offset
     /// at which it does, to rounding. `nodes` is the range of positions at the
     /// nodes of the segment.

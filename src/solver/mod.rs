@@ -5,24 +5,30 @@
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
 //! * [`orbit`]: a motion that repeats;
+//! * [`extremes`]: how far the motion has swung;
+//! * `pieces`: the segments that are kept;
 //! * [`trajectory`]: segments one after another, reused where the motion repeats.
 
 pub mod collocation;
 pub mod double;
+pub mod extremes;
 pub mod limits;
 pub mod number;
 pub mod orbit;
 mod outcome;
+mod pieces;
 pub mod segment;
 pub mod step_control;
 mod tables;
 pub mod trajectory;
 
+use serde::{Deserialize, Serialize};
+
 use double::Double;
 use number::Number;
 
 /// Position x and rate x' of the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// x.
     pub position: f64,

@@ -1,9 +1,11 @@
 //! A motion that repeats: between two turning points it runs there and back.
 
+use serde::{Deserialize, Serialize};
+
 use super::double::Double;
 
 /// The motion between two turning points of an autonomous, reversible equation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Orbit {
     first_turn: Double,
     second_turn: Double,
@@ -19,6 +21,32 @@ impl Orbit {
             second_turn,
             period: second_turn.sub(first_turn).scale(2.0),
         }
+    }
+
+    /// Both turning points, the earlier one first.
+    #[must_use]
+    pub fn turns(&self) -> [Double; 2] {
+        [self.first_turn, self.second_turn]
+    }
+
+    /// The turning points that are met within the time `step`.
+    pub fn turns_within(
+        &self,
+        now: Double,
+        direction: f64,
+        step: f64,
+    ) -> impl Iterator<Item = Double> {
+        let mut turns = self.turns();
+        if direction > 0.0 {
+            turns.reverse();
+        }
+        let to_first = self.time_to_turn(now, direction);
+        let half_period = 0.5 * self.period.high;
+        let met = [step >= to_first, step >= to_first + half_period];
+        turns
+            .into_iter()
+            .zip(met)
+            .filter_map(|(turn, met)| met.then_some(turn))
     }
 
     /// The later turning point.

@@ -2,14 +2,19 @@
 
 use nalgebra::{SMatrixView, SVector};
 
+use serde::{Deserialize, Serialize};
+
 use super::State;
 use super::tables::{Columns, GAUSS_16, PAIRS};
 
 /// Number of coefficients: the twice integrated polynomial of degree 15.
 const TERMS: usize = 2 * PAIRS + 2;
 
+/// Parts of a segment in each of which the motion turns at most once.
+pub const PARTS: usize = 32;
+
 /// x(t) over one substep, u = t/half − 1 ∈ [−1, 1].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Segment {
     half: f64,
     start: State,
@@ -20,7 +25,9 @@ pub struct Segment {
     odd: [f64; PAIRS],
     /// Coefficients of the powers of u; worked out when first needed, since
     /// whoever runs over a whole segment needs its end only.
+    #[serde(skip)]
     power: [f64; TERMS],
+    #[serde(skip)]
     expanded: bool,
 }
 
@@ -75,6 +82,15 @@ impl Segment {
     #[must_use]
     pub fn tail(&self) -> f64 {
         self.even[PAIRS - 1].abs() + self.odd[PAIRS - 1].abs()
+    }
+
+    /// Whether the numbers can be those of a substep.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let State { position, rate } = self.start;
+        let numbers = [position, rate, self.end.position, self.end.rate];
+        let all = numbers.iter().chain(&self.even).chain(&self.odd);
+        self.half > 0.0 && self.half.is_finite() && all.copied().all(f64::is_finite)
     }
 
     /// Works out the powers of u, which [`Segment::position`] and
@@ -136,6 +152,18 @@ impl Segment {
             .rev()
             .fold(0.0, |sum, k| sum * u + k as f64 * self.power[k]);
         slope / self.half
+    }
+
+    /// The positions at which the motion turns between two offsets.
+    pub fn turns(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
+        let parts = ((to - from) / self.length() * PARTS as f64).ceil() as usize;
+        let part = (to - from) / parts.max(1) as f64;
+        let border = move |i: usize| from + i as f64 * part;
+        (0..parts).filter_map(move |i| {
+            let (begin, end) = (border(i), border(i + 1));
+            let turns = self.rate(begin) * self.rate(end) < 0.0;
+            turns.then(|| self.position(self.crossing(begin, end, Segment::rate)))
+        })
     }
 
     /// The offset in (`from`, `to`] at which `f` crosses zero, where it has

@@ -1,5 +1,7 @@
 //! How long the next substep may be.
 
+use serde::{Deserialize, Serialize};
+
 /// Order with which the error inside a substep falls: the first neglected
 /// Legendre coefficient of f (degree 16), twice integrated.
 const ORDER: f64 = 18.0;
@@ -18,7 +20,7 @@ const SLOW: f64 = 0.35;
 const CAUTION: f64 = 0.85;
 
 /// Chooses substeps so that the error in each stays below the tolerance.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct StepControl {
     /// Error of the position that a substep may make, relative to the position.
     pub tolerance: f64,
@@ -38,6 +40,12 @@ impl StepControl {
     #[must_use]
     pub fn new(tolerance: f64) -> StepControl {
         StepControl { tolerance }
+    }
+
+    /// Whether the tolerance is one.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.tolerance > 0.0 && self.tolerance < 1.0
     }
 
     /// How closely the stages of a substep have to be solved.

@@ -267,9 +267,53 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |view| view.collapse.map_or(f64::INFINITY, |c| c.time.value()),
         &[],
     ),
+    parameter(
+        "record_extremes",
+        "whether the extremes of lambda and lambda3 are recorded",
+        Fixed,
+        Kind::Boolean,
+        0.0,
+        |scene| f64::from(u8::from(scene.record_extremes)),
+        |scene, value| scene.record_extremes = value != 0.0,
+    ),
+    result(
+        "lambda_lowest",
+        "smallest lambda since the start time; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| view.extremes().map_or(0.0, |e| e.lowest),
+        &[],
+    ),
+    result(
+        "lambda_highest",
+        "largest lambda since the start time; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| view.extremes().map_or(0.0, |e| e.highest),
+        &[],
+    ),
+    result(
+        "lambda3_lowest",
+        "smallest lambda3 since the start time; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| {
+            view.extremes()
+                .map_or(0.0, |e| 1.0 / (e.highest * e.highest))
+        },
+        &[],
+    ),
+    result(
+        "lambda3_highest",
+        "largest lambda3 since the start time; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        |view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest)),
+        &[],
+    ),
 ]);
 
-const COUNT: usize = 29;
+const COUNT: usize = 34;
 
 const fn real(min: f64, max: f64, nominal: f64) -> Kind {
     Kind::Real { min, max, nominal }

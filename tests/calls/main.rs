@@ -15,7 +15,7 @@ use std::sync::Mutex;
 
 use dielectric_elastomer_actuator::abi::*;
 use dielectric_elastomer_actuator::description::GUID;
-use dielectric_elastomer_actuator::variables::value_reference;
+use dielectric_elastomer_actuator::variables::{VARIABLES, value_reference};
 use fmi::fmi2::binding::*;
 
 const OK: fmi2Status = fmi2Status_fmi2OK;

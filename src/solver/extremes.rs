@@ -1,0 +1,29 @@
+//! How far a motion has swung to both sides.
+
+use serde::{Deserialize, Serialize};
+
+/// The smallest and the largest position that a motion has taken.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Extremes {
+    /// The smallest position.
+    pub lowest: f64,
+    /// The largest position.
+    pub highest: f64,
+}
+
+impl Extremes {
+    /// The extremes of a motion that has only been at this position.
+    #[must_use]
+    pub fn at(position: f64) -> Extremes {
+        Extremes {
+            lowest: position,
+            highest: position,
+        }
+    }
+
+    /// Takes a further position into account.
+    pub fn include(&mut self, position: f64) {
+        self.lowest = self.lowest.min(position);
+        self.highest = self.highest.max(position);
+    }
+}

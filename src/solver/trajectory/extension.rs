@@ -1,0 +1,139 @@
+//! The next piece of a motion.
+
+use super::Trajectory;
+use crate::solver::collocation::{self, Substep};
+use crate::solver::double::Double;
+use crate::solver::orbit::Orbit;
+use crate::solver::pieces::{CAPACITY, Piece};
+use crate::solver::segment::Segment;
+use crate::solver::step_control::Verdict;
+use crate::solver::{Equation, LocalEquation, State};
+
+/// An orbit is repeated as long as the caller likes, and so is its error; the
+/// errors of ever new starts add up. Neither costs more than a sweep or two.
+const REPEATED_SHARE: f64 = 0.001;
+
+/// First substep in units of the motion's time scale.
+const FIRST_SUBSTEP: f64 = 2.0;
+
+/// A substep shorter than this part of the time scale cannot go on.
+const SHORTEST: f64 = 1e-12;
+
+impl Trajectory {
+    /// Adds one more piece; `rest` is the time still asked for. Returns by how
+    /// much the origin was moved.
+    /// The error is the length of a substep that was too short to go on.
+    pub(super) fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
+        let autonomous = self.follows_orbits && equation.is_autonomous();
+        let begin = self.end();
+        let state = match self.pieces.list().last() {
+            Some(piece) => piece.segment.end(),
+            None => self.start,
+        };
+        let local = equation.at(self.origin.add(begin));
+        if autonomous && self.pieces.count() == 0 && state.rate == 0.0 {
+            self.first_turn = Some(Double::ZERO);
+            let load = local.load(0.0);
+            self.at_rest = local.acceleration(load, state.position, 0.0) == 0.0;
+            if self.at_rest {
+                return Ok(Double::ZERO);
+            }
+        }
+        let most = if self.restless { rest } else { f64::INFINITY };
+        let substep = self.substep(&local, state, autonomous, most)?;
+        // Pieces are kept only while an orbit may still come out of them.
+        let keep = autonomous && self.pieces.count() < CAPACITY;
+        let mut shift = Double::ZERO;
+        if !keep {
+            if self.extremes.is_some() && self.pieces.count() > 0 {
+                self.arrive(begin);
+            }
+            shift = begin;
+            self.origin = self.origin.add(begin);
+            self.start = state;
+            self.now = self.now.sub(begin);
+            self.recorded = self.recorded.sub(begin);
+            self.index = 0;
+            self.first_turn = None;
+        }
+        let begin = begin.sub(shift);
+        self.pieces.take_spare(begin, keep);
+        let segment = &mut self.pieces.piece(self.pieces.count() - 1).segment;
+        self.stop = self
+            .limits
+            .first_contact(segment, substep.nodes())
+            .map(|(limit, offset)| (limit, begin.plus(offset)));
+        if autonomous && self.stop.is_none() {
+            self.look_for_turn(state.rate);
+        }
+        Ok(shift)
+    }
+
+    /// Solves the next substep into the spare segment, as long as the tolerance allows but
+    /// no longer than `most`.
+    fn substep<L: LocalEquation>(
+        &mut self,
+        local: &L,
+        state: State,
+        autonomous: bool,
+        most: f64,
+    ) -> Result<Substep, f64> {
+        let time_scale = local.time_scale(state);
+        let shortest = (SHORTEST * time_scale).min(0.5 * most);
+        let mut control = self.control;
+        if autonomous || self.restless {
+            control.tolerance *= REPEATED_SHARE;
+        }
+        let scale = state.position.abs();
+        let free = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);
+        let most = most.min(local.longest_substep());
+        let mut length = free.min(most);
+        loop {
+            if length.is_nan() || length <= shortest {
+                return Err(length);
+            }
+            let settled = control.settled() * scale;
+            let segment = self.pieces.spare();
+            let solved = collocation::solve(self.level, local, state, length, settled, segment);
+            let verdict = match &solved {
+                Ok(substep) if self.limits.are_left_behind_by(substep.nodes()) => {
+                    Verdict::Reject(0.5)
+                }
+                Ok(substep) => control.judge(substep.error / scale, substep.contraction),
+                Err(collocation::Diverged) => Verdict::Reject(0.5),
+            };
+            match (verdict, solved) {
+                (Verdict::Accept(factor), Ok(substep)) => {
+                    // A substep cut short says little about the next one.
+                    self.next_length = Some(if length == most {
+                        free
+                    } else {
+                        length * factor
+                    });
+                    return Ok(substep);
+                }
+                (Verdict::Reject(factor) | Verdict::Accept(factor), _) => length *= factor,
+            }
+        }
+    }
+
+    /// Notes a turning point of the last piece; the second one closes the orbit.
+    fn look_for_turn(&mut self, rate_at_begin: f64) {
+        let Some(Piece { begin, segment }) = self.pieces.last() else {
+            return;
+        };
+        if rate_at_begin * segment.end().rate >= 0.0 {
+            return;
+        }
+        segment.expand();
+        let offset = segment.crossing(0.0, segment.length(), Segment::rate);
+        let turn = begin.plus(offset);
+        match self.first_turn {
+            None => self.first_turn = Some(turn),
+            Some(first_turn) if turn.since(first_turn) > 0.0 => {
+                self.orbit = Some(Orbit::between(first_turn, turn));
+            }
+            Some(_) => {}
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! The motion from a start onwards: substeps one after another, each answered
+//! from its polynomial as long as the caller stays inside it.
+//!
+//! Where the equation is autonomous, the pieces are kept until the motion has
+//! turned twice. Between two turning points it then runs there and back for
+//! ever, so that no further substep is integrated, whatever the time asked for.
+
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+
+use super::double::Double;
+use super::extremes::Extremes;
+use super::limits::{Limit, Limits};
+use super::orbit::Orbit;
+pub use super::outcome::{Failure, Progress};
+use super::pieces::{Piece, Pieces};
+use super::step_control::StepControl;
+use super::{Equation, State};
+
+mod extension;
+mod present;
+
+/// Substeps that one call may take: about a second of work.
+const MOST_SUBSTEPS: u32 = 2_000_000;
+
+/// A motion that is followed forward in time. It can be stored, and goes on bit
+/// for bit on processors of the same SIMD level; check what was stored with
+/// [`Trajectory::is_sound`] where it may have been tampered with.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Trajectory {
+    #[serde(skip, default = "Level::new")]
+    level: Level,
+    control: StepControl,
+    limits: Limits,
+    /// Time of the model at which the first piece begins.
+    origin: Double,
+    /// State at the origin.
+    start: State,
+    /// From the origin on without a gap.
+    pieces: Pieces,
+    /// The piece in which the present lies.
+    index: usize,
+    /// The present, counted from the origin; on an orbit folded into it.
+    now: Double,
+    /// −1 while an orbit is run back, else 1.
+    direction: f64,
+    /// For less time than this the present stays in its piece and meets nothing.
+    slack: f64,
+    first_turn: Option<Double>,
+    orbit: Option<Orbit>,
+    stop: Option<(Limit, Double)>,
+    at_rest: bool,
+    next_length: Option<f64>,
+    /// Whether a motion that repeats is looked for.
+    follows_orbits: bool,
+    /// Advances since the last restart.
+    advances: u32,
+    /// The last start was good for a single advance: the host changes the
+    /// equation at each communication point, and looking ahead is of no use.
+    restless: bool,
+    /// How far the motion has swung, where that is recorded.
+    extremes: Option<Extremes>,
+    /// The time up to which it is, counted from the origin.
+    recorded: Double,
+}
+
+impl Trajectory {
+    /// A motion from `start` at `time`, followed with a relative `tolerance` of
+    /// the position inside the `limits`.
+    #[must_use]
+    pub fn new(start: State, time: Double, limits: Limits, tolerance: f64) -> Trajectory {
+        Trajectory {
+            level: Level::new(),
+            control: StepControl::new(tolerance),
+            limits,
+            origin: time,
+            start,
+            pieces: Pieces::none(),
+            index: 0,
+            now: Double::ZERO,
+            direction: 1.0,
+            slack: 0.0,
+            first_turn: None,
+            orbit: None,
+            stop: None,
+            at_rest: false,
+            next_length: None,
+            follows_orbits: true,
+            advances: 0,
+            restless: false,
+            extremes: None,
+            recorded: Double::ZERO,
+        }
+    }
+
+    /// The same motion, its extremes recorded from now on.
+    #[must_use]
+    pub fn recording_extremes(mut self) -> Trajectory {
+        self.extremes = Some(Extremes::at(self.position()));
+        self
+    }
+
+    /// The extremes up to the present, where they are recorded.
+    #[must_use]
+    pub fn extremes(&self) -> Option<Extremes> {
+        self.extremes
+    }
+
+    /// The same motion computed with another set of processor instructions.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Trajectory {
+        self.level = level;
+        self
+    }
+
+    /// The same motion, integrated all the way even where it repeats.
+    #[must_use]
+    pub fn without_orbits(mut self) -> Trajectory {
+        self.follows_orbits = false;
+        self
+    }
+
+    /// Starts anew from the present state at `time`: the equation has changed.
+    pub fn restart(&mut self, time: Double) {
+        self.start = self.state();
+        self.origin = time;
+        self.restless = self.advances == 1;
+        self.advances = 0;
+        self.pieces.clear();
+        self.index = 0;
+        self.now = Double::ZERO;
+        self.recorded = Double::ZERO;
+        self.direction = 1.0;
+        self.slack = 0.0;
+        self.first_turn = None;
+        self.orbit = None;
+        self.stop = None;
+        self.at_rest = false;
+    }
+
+    /// Whether the numbers can be those of a motion that has been followed: to
+    /// be checked where they do not come from this process.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let instants = [self.origin, self.now, self.recorded];
+        let finite = |time: &Double| time.value().is_finite();
+        let turns = self.orbit.iter().flat_map(Orbit::turns);
+        let stop = self.stop.map(|(_, at)| at);
+        let inside = |time: &Double| {
+            finite(time) && time.since(Double::ZERO) >= 0.0 && time.since(self.end()) <= 0.0
+        };
+        let State { position, rate } = self.start;
+        let length = self.next_length.unwrap_or(1.0);
+        position.is_finite()
+            && rate.is_finite()
+            && self.control.is_sound()
+            && self.limits.are_sound()
+            && instants.iter().all(finite)
+            && inside(&self.now)
+            && self.index < self.pieces.count().max(1)
+            && self.pieces.find(self.now, self.index) == self.index
+            && turns
+                .chain(self.first_turn)
+                .chain(stop)
+                .all(|time| inside(&time))
+            && self.direction.abs() == 1.0
+            && (0.0..=self.end().value()).contains(&self.slack)
+            && length > 0.0
+            && length.is_finite()
+    }
+
+    /// Follows the motion for the time `step` > 0. The `equation` must be the
+    /// same as in the calls before, back to the last [`Trajectory::restart`].
+    ///
+    /// # Errors
+    /// [`Failure`] where the integration cannot go on; the trajectory then
+    /// stands at the end of the last substep.
+    pub fn advance<E: Equation>(&mut self, equation: &E, step: f64) -> Result<Progress, Failure> {
+        self.advances = self.advances.saturating_add(1);
+        if step < self.slack {
+            self.slack -= step;
+            self.now = self.now.plus(self.direction * step);
+            return Ok(Progress::Whole);
+        }
+        if let Some(orbit) = self.orbit {
+            self.run_orbit(orbit, step);
+            return Ok(Progress::Whole);
+        }
+        if self.at_rest {
+            return Ok(Progress::Whole);
+        }
+        let mut target = self.now.plus(step);
+        let mut substeps = 0;
+        loop {
+            if let Some((limit, at)) = self.stop
+                && target.since(at) >= 0.0
+            {
+                let after = step - target.since(at);
+                self.arrive(at);
+                return Ok(Progress::Stopped { limit, after });
+            }
+            if self.pieces.count() > 0 && target.since(self.end()) <= 0.0 {
+                self.arrive(target);
+                return Ok(Progress::Whole);
+            }
+            if substeps == MOST_SUBSTEPS {
+                let after = step - self.stand_at_end(target);
+                return Err(Failure::TooManySubsteps {
+                    most: MOST_SUBSTEPS,
+                    after,
+                });
+            }
+            substeps += 1;
+            let rest = target.since(self.end());
+            let shift = match self.extend(equation, rest) {
+                Ok(shift) => shift,
+                Err(length) => {
+                    let after = step - self.stand_at_end(target);
+                    return Err(Failure::SubstepTooShort { length, after });
+                }
+            };
+            target = target.sub(shift);
+            if self.at_rest {
+                return Ok(Progress::Whole);
+            }
+            if let Some(orbit) = self.orbit
+                && target.since(orbit.second_turn()) > 0.0
+            {
+                let rest = target.since(orbit.second_turn());
+                self.arrive(orbit.second_turn());
+                self.run_orbit(orbit, rest);
+                return Ok(Progress::Whole);
+            }
+        }
+    }
+
+    /// The end of the last piece.
+    fn end(&self) -> Double {
+        self.pieces.list().last().map_or(Double::ZERO, Piece::end)
+    }
+
+    /// Moves the present to the end of the last piece and returns the time
+    /// from there to `target`.
+    fn stand_at_end(&mut self, target: Double) -> f64 {
+        let end = self.end();
+        self.arrive(end);
+        target.since(end)
+    }
+}
