@@ -1,4 +1,5 @@
-//! FMI 2.0 co-simulation unit of a miniaturized dielectric elastomer actuator.
+//! FMI 2.0 unit, for co-simulation and model exchange, of a miniaturized
+//! dielectric elastomer actuator.
 //!
 //! The modules in the order in which data flows through them:
 //!

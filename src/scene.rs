@@ -1,5 +1,7 @@
 //! A scene: everything that a host sets before and between communication steps.
 
+use serde::{Deserialize, Serialize};
+
 use crate::actuator::drive::{Harmonic, Polynomial};
 use crate::actuator::{Coefficients, Drive, Motion, Parameters};
 use crate::solver::State;
@@ -7,7 +9,7 @@ use crate::solver::double::Double;
 use crate::solver::limits::Limits;
 
 /// What the actuator does where the motion reaches a limit of the stretch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum OnPullIn {
     /// It stays at the limit, and communication steps go on.
     Hold,
@@ -16,7 +18,7 @@ pub enum OnPullIn {
 }
 
 /// One scenario: actuator, start, limits and drive.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
     /// The actuator.
     pub parameters: Parameters,

@@ -132,16 +132,8 @@ pub fn guarded(
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
         return fmi2Status_fmi2Error;
     };
-    let phase = component.instance.phase();
-    if !phase.permits(call) {
-        let fatal = phase == crate::slave::Phase::Fatal;
-        let severity = if fatal {
-            Severity::Fatal
-        } else {
-            Severity::Error
-        };
-        let text = format!("not allowed in the phase \"{}\"", phase.name());
-        return component.host.refuse(function, &Fault { severity, text });
+    if let Err(fault) = component.instance.check(call) {
+        return component.host.refuse(function, &fault);
     }
     match catch_unwind(AssertUnwindSafe(|| body(component))) {
         Ok(Ok(None)) => fmi2Status_fmi2OK,

@@ -19,7 +19,11 @@
 
 mod component;
 mod conformance;
+mod envelope;
+mod exchange;
 mod pointers;
+mod state;
+mod stepping;
 
 use std::ffi::CStr;
 
@@ -27,10 +31,13 @@ use fmi::fmi2::binding::*;
 use libc::c_char;
 
 use crate::description::GUID;
-use crate::slave::{Call, Fault, Instance, Type};
+use crate::slave::{Call, Fault, Instance, Interface, Type};
 use component::{Component, Host, guarded};
 pub use conformance::EXPORTED_NAMES;
-use pointers::{place, slice, slice_mut, text};
+pub use exchange::*;
+use pointers::{slice, slice_mut, text};
+pub use state::*;
+pub use stepping::*;
 
 // ---- Inquire version, create and destroy ----
 
@@ -90,9 +97,15 @@ pub unsafe extern "C" fn fmi2Instantiate(
         if name?.is_empty() {
             return Err(Fault::error("the instance name is empty".into()));
         }
-        if fmuType != fmi2Type_fmi2CoSimulation {
-            return Err(Fault::error("only co-simulation is offered".into()));
-        }
+        let interface = if fmuType == fmi2Type_fmi2CoSimulation {
+            Interface::CoSimulation
+        } else if fmuType == fmi2Type_fmi2ModelExchange {
+            Interface::ModelExchange
+        } else {
+            return Err(Fault::error(format!(
+                "there is no FMU type {fmuType}; co-simulation and model exchange are offered"
+            )));
+        };
         // SAFETY: see the head of this file.
         let guid = unsafe { text(fmuGUID, "the GUID") }?;
         if guid.to_bytes() != GUID.as_bytes() {
@@ -100,11 +113,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
                 "the GUID is not {GUID}: binary and modelDescription.xml do not belong together"
             )));
         }
-        Ok(())
+        Ok(interface)
     };
     match accept() {
-        Ok(()) => {
-            let instance = Instance::new();
+        Ok(interface) => {
+            let instance = Instance::of(interface);
             Box::into_raw(Box::new(Component { instance, host })).cast()
         }
         Err(fault) => {
@@ -253,151 +266,38 @@ setter!(fmi2SetInteger, fmi2Integer, Type::Integer, f64::from);
 setter!(fmi2SetBoolean, fmi2Boolean, Type::Boolean, f64::from);
 setter!(fmi2SetString, fmi2String, Type::String, |_| 0.0);
 
-// ---- Co-simulation ----
+// ---- Directional derivatives ----
 
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    order: *const fmi2Integer,
-    value: *const fmi2Real,
+    vUnknown_ref: *const fmi2ValueReference,
+    nUnknown: usize,
+    vKnown_ref: *const fmi2ValueReference,
+    nKnown: usize,
+    dvKnown: *const fmi2Real,
+    dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
     guarded(
         c,
-        "fmi2SetRealInputDerivatives",
-        Call::SetInputDerivatives,
+        "fmi2GetDirectionalDerivative",
+        Call::DirectionalDerivative,
         |component| {
             // SAFETY: see the head of this file.
-            let references = unsafe { slice(vr, nvr, "vr") }?;
+            let unknowns = unsafe { slice(vUnknown_ref, nUnknown, "vUnknown_ref") }?;
             // SAFETY: see the head of this file.
-            let orders = unsafe { slice(order, nvr, "order") }?;
+            let knowns = unsafe { slice(vKnown_ref, nKnown, "vKnown_ref") }?;
             // SAFETY: see the head of this file.
-            let values = unsafe { slice(value, nvr, "value") }?;
-            component
-                .instance
-                .set_input_derivatives(references, orders, values)?;
+            let changes = unsafe { slice(dvKnown, nKnown, "dvKnown") }?;
+            // SAFETY: see the head of this file.
+            let derivatives = unsafe { slice_mut(dvUnknown, nUnknown, "dvUnknown") }?;
+            component.instance.directional_derivative(
+                unknowns,
+                knowns,
+                changes,
+                |place, value| derivatives[place] = value,
+            )?;
             Ok(None)
         },
     )
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DoStep(
-    c: fmi2Component,
-    currentCommunicationPoint: fmi2Real,
-    communicationStepSize: fmi2Real,
-    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
-) -> fmi2Status {
-    guarded(c, "fmi2DoStep", Call::DoStep, |component| {
-        component
-            .instance
-            .do_step(currentCommunicationPoint, communicationStepSize)
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealStatus(
-    c: fmi2Component,
-    s: fmi2StatusKind,
-    value: *mut fmi2Real,
-) -> fmi2Status {
-    guarded(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
-        // SAFETY: see the head of this file.
-        let value = unsafe { place(value, "value") }?;
-        if s != fmi2StatusKind_fmi2LastSuccessfulTime {
-            return Err(no_such_status());
-        }
-        *value = component.instance.last_successful_time();
-        Ok(None)
-    })
-}
-
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBooleanStatus(
-    c: fmi2Component,
-    s: fmi2StatusKind,
-    value: *mut fmi2Boolean,
-) -> fmi2Status {
-    guarded(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
-        // SAFETY: see the head of this file.
-        let value = unsafe { place(value, "value") }?;
-        if s != fmi2StatusKind_fmi2Terminated {
-            return Err(no_such_status());
-        }
-        *value = component.instance.wants_to_terminate().into();
-        Ok(None)
-    })
-}
-
-fn no_such_status() -> Fault {
-    Fault::discard(
-        "this status is not available: steps are done when fmi2DoStep returns; \
-         ask for fmi2LastSuccessfulTime (Real) or fmi2Terminated (Boolean)"
-            .into(),
-    )
-}
-
-/// Functions that ask about a step in progress: there never is one.
-macro_rules! no_status {
-    ($($function:ident: $value:ty;)*) => {$(
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
-            c: fmi2Component,
-            _s: fmi2StatusKind,
-            _value: *mut $value,
-        ) -> fmi2Status {
-            guarded(c, stringify!($function), Call::GetStatus, |_| Err(no_such_status()))
-        }
-    )*};
-}
-
-no_status! {
-    fmi2GetStatus: fmi2Status;
-    fmi2GetIntegerStatus: fmi2Integer;
-    fmi2GetStringStatus: fmi2String;
-}
-
-/// Functions of capabilities that the description does not declare. They are
-/// exported because some hosts bind every name of the header.
-macro_rules! not_offered {
-    ($($function:ident($($argument:ident: $type:ty),*);)*) => {$(
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(c: fmi2Component, $($argument: $type),*) -> fmi2Status {
-            $(let _ = $argument;)*
-            guarded(c, stringify!($function), Call::NotOffered, |_| {
-                Err(Fault::error("not offered, as modelDescription.xml says".into()))
-            })
-        }
-    )*};
-}
-
-not_offered! {
-    fmi2GetFMUstate(state: *mut fmi2FMUstate);
-    fmi2SetFMUstate(state: fmi2FMUstate);
-    fmi2FreeFMUstate(state: *mut fmi2FMUstate);
-    fmi2SerializedFMUstateSize(state: fmi2FMUstate, size: *mut usize);
-    fmi2SerializeFMUstate(state: fmi2FMUstate, serialized: *mut fmi2Byte, size: usize);
-    fmi2DeSerializeFMUstate(serialized: *const fmi2Byte, size: usize, state: *mut fmi2FMUstate);
-    fmi2GetDirectionalDerivative(
-        unknown: *const fmi2ValueReference, unknowns: usize,
-        known: *const fmi2ValueReference, knowns: usize,
-        known_derivative: *const fmi2Real, unknown_derivative: *mut fmi2Real
-    );
-    fmi2EnterEventMode();
-    fmi2NewDiscreteStates(info: *mut fmi2EventInfo);
-    fmi2EnterContinuousTimeMode();
-    fmi2CompletedIntegratorStep(
-        no_set_prior: fmi2Boolean, enter_event_mode: *mut fmi2Boolean, terminate: *mut fmi2Boolean
-    );
-    fmi2SetTime(time: fmi2Real);
-    fmi2SetContinuousStates(states: *const fmi2Real, count: usize);
-    fmi2GetDerivatives(derivatives: *mut fmi2Real, count: usize);
-    fmi2GetEventIndicators(indicators: *mut fmi2Real, count: usize);
-    fmi2GetContinuousStates(states: *mut fmi2Real, count: usize);
-    fmi2GetNominalsOfContinuousStates(nominals: *mut fmi2Real, count: usize);
-    fmi2GetRealOutputDerivatives(
-        vr: *const fmi2ValueReference, nvr: usize, order: *const fmi2Integer, value: *mut fmi2Real
-    );
-    fmi2CancelStep();
 }

@@ -1,6 +1,9 @@
 //! Surface effects folded into the coefficients of the equation of motion.
 
+use serde::{Deserialize, Serialize};
+
 use crate::actuator::Parameters;
+use crate::solver::number::Number;
 
 /// The coefficients of Eq. 16 in powers of the stretch λ:
 ///
@@ -10,33 +13,50 @@ use crate::actuator::Parameters;
 ///
 /// Surface energy, surface tension and surface elasticity enter nowhere else,
 /// so they cost nothing while the motion is integrated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coefficients {
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Coefficients<N = f64> {
     /// c, the inertia of the motion in the plane.
-    pub inertia: f64,
+    pub inertia: N,
     /// 1 + 2γ − 2τ + E.
-    pub linear: f64,
+    pub linear: N,
     /// 4τ − 4E.
-    pub cubic: f64,
+    pub cubic: N,
     /// 3E.
-    pub quintic: f64,
+    pub quintic: N,
 }
 
-impl Coefficients {
+impl<N: Number> Coefficients<N> {
     /// Folds the parameters.
     #[must_use]
-    pub fn fold(parameters: &Parameters) -> Coefficients {
+    pub fn fold(parameters: &Parameters<N>) -> Coefficients<N> {
         let Parameters {
             aspect,
             surface_energy,
             surface_tension,
             surface_elasticity,
         } = *parameters;
+        let number = |value: f64| aspect.same(value);
         Coefficients {
             inertia: aspect,
-            linear: 1.0 + 2.0 * (surface_energy - surface_tension) + surface_elasticity,
-            cubic: 4.0 * (surface_tension - surface_elasticity),
-            quintic: 3.0 * surface_elasticity,
+            linear: number(1.0)
+                + number(2.0) * (surface_energy - surface_tension)
+                + surface_elasticity,
+            cubic: number(4.0) * (surface_tension - surface_elasticity),
+            quintic: number(3.0) * surface_elasticity,
+        }
+    }
+}
+
+impl Coefficients {
+    /// The coefficients as numbers of the kind of `like`, in each of its lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn same<N: Number>(&self, like: N) -> Coefficients<N> {
+        Coefficients {
+            inertia: like.same(self.inertia),
+            linear: like.same(self.linear),
+            cubic: like.same(self.cubic),
+            quintic: like.same(self.quintic),
         }
     }
 }

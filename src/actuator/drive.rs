@@ -4,14 +4,17 @@
 //! and its derivatives. A harmonic voltage may be added to it (Eq. 21), which
 //! the model follows exactly at any communication step.
 
+use serde::{Deserialize, Serialize};
+
 use crate::solver::double::Double;
+use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
 /// Derivatives of an input that are taken into account: orders 1 to 4.
 pub const HIGHEST_DERIVATIVE: usize = 4;
 
 /// An input from the moment at which it was set: Σ term[k] sᵏ.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     term: [f64; HIGHEST_DERIVATIVE + 1],
 }
@@ -39,6 +42,12 @@ impl Polynomial {
     /// The input with all derivatives 0.
     pub fn clear_derivatives(&mut self) {
         self.term[1..].fill(0.0);
+    }
+
+    /// Whether it is a polynomial in finite numbers.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.term.iter().all(|term| term.is_finite())
     }
 
     /// Whether the input keeps its value.
@@ -81,7 +90,7 @@ impl Polynomial {
 }
 
 /// The built-in alternating voltage φ_a sin(ωt + ϑ), t being the time of the model.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Harmonic {
     /// φ_a, nondimensional voltage.
     pub amplitude: f64,
@@ -118,10 +127,20 @@ impl Harmonic {
         };
         rest + self.phase
     }
+
+    /// The alternating voltage at `time` as it changes in a direction, whose
+    /// numbers are the rates of change of those in their places.
+    fn along(&self, direction: &Harmonic, time: Double) -> Dual {
+        let angle = Dual::new(
+            self.angle(time),
+            direction.frequency * time.value() + direction.phase,
+        );
+        Dual::new(self.amplitude, direction.amplitude) * angle.sin()
+    }
 }
 
 /// Voltage and prestress from `since` on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Time of the model at which the inputs were set.
     pub since: Double,
@@ -145,6 +164,12 @@ impl Drive {
         }
     }
 
+    /// Whether the inputs are polynomials in finite numbers.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.since.value().is_finite() && self.voltage.is_finite() && self.prestress.is_finite()
+    }
+
     /// Whether voltage and prestress keep their values.
     #[must_use]
     pub fn is_constant(&self) -> bool {
@@ -162,6 +187,20 @@ impl Drive {
             prestress: self.prestress.shifted(shift),
             harmonic: self.harmonic,
         }
+    }
+
+    /// Total voltage and prestress at `time` as they change in a direction,
+    /// whose numbers are the rates of change of those in their places.
+    #[must_use]
+    pub fn along(&self, direction: &Drive, time: Double) -> (Dual, Dual) {
+        let offset = time.since(self.since);
+        let input = |value: &Polynomial, change: &Polynomial| {
+            Dual::new(value.at(offset), change.at(offset))
+        };
+        let voltage = input(&self.voltage, &direction.voltage);
+        let prestress = input(&self.prestress, &direction.prestress);
+        let alternating = self.harmonic.along(&direction.harmonic, time);
+        (voltage + alternating, prestress)
     }
 
     /// The drive seen from `time`.

@@ -1,5 +1,7 @@
 //! The equation of motion (Eq. 16) and its energy (Eq. 18), nondimensional.
 
+use serde::{Deserialize, Serialize};
+
 use super::coefficients::Coefficients;
 use super::drive::{Drive, LocalDrive};
 use crate::solver::double::Double;
@@ -7,7 +9,7 @@ use crate::solver::number::Number;
 use crate::solver::{Equation, LocalEquation, State};
 
 /// The motion of an actuator under a drive.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Motion {
     /// The actuator.
     pub coefficients: Coefficients,
@@ -34,20 +36,22 @@ pub struct Load<N> {
 /// The powers are arranged so that few operations wait for one another.
 #[inline(always)]
 pub fn acceleration<N: Number>(
-    coefficients: &Coefficients,
+    coefficients: &Coefficients<N>,
     load: Load<N>,
     stretch: N,
     rate: N,
 ) -> N {
-    let number = |value: f64| stretch.same(value);
     let square = stretch * stretch;
     let fourth = square * square;
     let seventh = (stretch * square) * fourth;
-    let cubic = number(coefficients.cubic) - load.voltage_squared;
-    let lower = cubic.mul_add(square, number(coefficients.linear));
-    let elastic = fourth.mul_add(number(coefficients.quintic), lower);
-    let driven = seventh.mul_add(load.prestress, (rate * rate).mul_add(number(6.0), square));
-    let inertia = seventh.mul_add(number(coefficients.inertia), stretch + stretch);
+    let cubic = coefficients.cubic - load.voltage_squared;
+    let lower = cubic.mul_add(square, coefficients.linear);
+    let elastic = fourth.mul_add(coefficients.quintic, lower);
+    let driven = seventh.mul_add(
+        load.prestress,
+        (rate * rate).mul_add(rate.same(6.0), square),
+    );
+    let inertia = seventh.mul_add(coefficients.inertia, stretch + stretch);
     (driven - (fourth * fourth) * elastic) / inertia
 }
 
@@ -117,7 +121,7 @@ impl LocalEquation for LocalMotion {
 
     #[inline(always)]
     fn acceleration<N: Number>(&self, load: Load<N>, position: N, rate: N) -> N {
-        acceleration(&self.coefficients, load, position, rate)
+        acceleration(&self.coefficients.same(position), load, position, rate)
     }
 
     /// Two periods of φ² under the alternating voltage, which the 16 nodes of a

@@ -98,18 +98,26 @@ impl Hash {
             Kind::Boolean => hash.byte(2),
             Kind::Enumeration => hash.byte(3),
         };
-        let mut hash = match variable.access {
-            Access::Input { .. } => return hash.byte(1),
-            Access::Setting { .. } => return hash.byte(2),
-            Access::Result { .. } => hash.byte(3),
+        let hash = match variable.derivative_of {
+            Some(state) => hash.byte(1).text(state),
+            None => hash.byte(0),
         };
-        if let Access::Result { from, .. } = variable.access {
-            let mut i = 0;
-            while i < from.len() {
-                hash = hash.text(from[i]);
-                i += 1;
-            }
+        match variable.access {
+            Access::Input { .. } => hash.byte(1),
+            Access::Setting { .. } => hash.byte(2),
+            Access::Result { dependencies, .. } => hash
+                .byte(3)
+                .texts(dependencies.now)
+                .texts(dependencies.at_start),
         }
-        hash
+    }
+
+    const fn texts(mut self, texts: &[&str]) -> Hash {
+        let mut i = 0;
+        while i < texts.len() {
+            self = self.text(texts[i]);
+            i += 1;
+        }
+        self.byte(0)
     }
 }

@@ -8,9 +8,10 @@ pub use guid::GUID;
 use schema::*;
 use serde::Serialize;
 
-use crate::slave::DEFAULT_TOLERANCE;
+use crate::slave::{DEFAULT_TOLERANCE, INDICATOR_COUNT};
 use crate::variables::{
-    Access, Causality, Kind, ON_PULL_IN, VARIABLES, Variability, Variable, value_reference,
+    Access, Causality, DERIVATIVES, Dependencies, Kind, ON_PULL_IN, STATES, VARIABLES, Variability,
+    Variable, value_reference,
 };
 
 /// The model identifier: name of the FMU and of the binary in it.
@@ -22,6 +23,10 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
     ("logStatusWarning", "warnings"),
     ("logStatusError", "calls that were refused or discarded"),
 ];
+
+/// Declared, not the highest that is served: a master that asks for one value of
+/// each output reads as many as the declared order, so that it reads too far.
+const OUTPUT_DERIVATIVE_ORDER: u32 = 1;
 
 const TYPE_NAME: &str = "OnPullIn";
 const UNIT: &str = "1";
@@ -52,11 +57,26 @@ fn description() -> FmiModelDescription {
         license: env!("CARGO_PKG_LICENSE"),
         generation_tool: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")),
         variable_naming_convention: "flat",
+        number_of_event_indicators: INDICATOR_COUNT,
+        model_exchange: ModelExchange {
+            model_identifier: MODEL_IDENTIFIER,
+            can_be_instantiated_only_once_per_process: false,
+            can_not_use_memory_management_functions: true,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+            provides_directional_derivative: true,
+        },
         co_simulation: CoSimulation {
             model_identifier: MODEL_IDENTIFIER,
             can_handle_variable_communication_step_size: true,
             can_interpolate_inputs: true,
+            max_output_derivative_order: OUTPUT_DERIVATIVE_ORDER,
+            can_run_asynchronously: false,
+            can_be_instantiated_only_once_per_process: false,
             can_not_use_memory_management_functions: true,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+            provides_directional_derivative: true,
         },
         unit_definitions: UnitDefinitions {
             unit: vec![Unit {
@@ -109,6 +129,7 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
                 max: Number(max),
                 nominal: Number(nominal),
                 start: start.map(Number),
+                derivative: variable.derivative_of.map(index),
             });
         }
         Kind::Boolean => {
@@ -153,33 +174,50 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
     }
 }
 
-/// The outputs follow from the state alone, so that no step has an algebraic
-/// loop through them; at the start they follow from the start values.
+/// The outputs follow from the states alone, so that no step has an algebraic
+/// loop through them.
 fn model_structure() -> ModelStructure {
-    let unknown = |name: &str, from: &[&str]| Unknown {
-        index: index(name),
-        dependencies: from
-            .iter()
-            .map(|name| index(name).to_string())
-            .collect::<Vec<_>>()
-            .join(" "),
-    };
-    let outputs = || {
-        VARIABLES
-            .iter()
-            .filter(|variable| variable.causality == Causality::Output)
-    };
-    let from = |variable: &Variable| match variable.access {
-        Access::Result { from, .. } => from,
-        _ => &[],
-    };
+    let mut initial: Vec<&Variable> = outputs().collect();
+    initial.extend(STATES.iter().chain(&DERIVATIVES).map(row));
+    initial.sort_by_key(|variable| index(variable.name));
+    initial.dedup_by_key(|variable| variable.name);
     ModelStructure {
-        outputs: Unknowns {
-            unknown: outputs().map(|v| unknown(v.name, &[])).collect(),
-        },
-        initial_unknowns: Unknowns {
-            unknown: outputs().map(|v| unknown(v.name, from(v))).collect(),
-        },
+        outputs: unknowns(outputs(), |from| from.now),
+        derivatives: unknowns(DERIVATIVES.iter().map(row), |from| from.now),
+        initial_unknowns: unknowns(initial.into_iter(), |from| from.at_start),
+    }
+}
+
+fn outputs() -> impl Iterator<Item = &'static Variable> {
+    VARIABLES
+        .iter()
+        .filter(|variable| variable.causality == Causality::Output)
+}
+
+fn row(reference: &u32) -> &'static Variable {
+    &VARIABLES[*reference as usize]
+}
+
+/// The variables with those of their dependencies that `pick` chooses.
+fn unknowns(
+    variables: impl Iterator<Item = &'static Variable>,
+    pick: fn(Dependencies) -> &'static [&'static str],
+) -> Unknowns {
+    let unknown = |variable: &Variable| {
+        let from = match variable.access {
+            Access::Result { dependencies, .. } => pick(dependencies),
+            _ => &[],
+        };
+        let mut places: Vec<u32> = from.iter().map(|name| index(name)).collect();
+        places.sort_unstable();
+        let places: Vec<String> = places.iter().map(u32::to_string).collect();
+        Unknown {
+            index: index(variable.name),
+            dependencies: places.join(" "),
+        }
+    };
+    Unknowns {
+        unknown: variables.map(unknown).collect(),
     }
 }
 

@@ -32,6 +32,10 @@ pub struct FmiModelDescription {
     pub generation_tool: &'static str,
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: &'static str,
+    #[serde(rename = "@numberOfEventIndicators")]
+    pub number_of_event_indicators: usize,
+    #[serde(rename = "ModelExchange")]
+    pub model_exchange: ModelExchange,
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
     #[serde(rename = "UnitDefinitions")]
@@ -49,6 +53,22 @@ pub struct FmiModelDescription {
 }
 
 #[derive(Serialize)]
+pub struct ModelExchange {
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: &'static str,
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    #[serde(rename = "@canNotUseMemoryManagementFunctions")]
+    pub can_not_use_memory_management_functions: bool,
+    #[serde(rename = "@canGetAndSetFMUstate")]
+    pub can_get_and_set_fmu_state: bool,
+    #[serde(rename = "@canSerializeFMUstate")]
+    pub can_serialize_fmu_state: bool,
+    #[serde(rename = "@providesDirectionalDerivative")]
+    pub provides_directional_derivative: bool,
+}
+
+#[derive(Serialize)]
 pub struct CoSimulation {
     #[serde(rename = "@modelIdentifier")]
     pub model_identifier: &'static str,
@@ -56,8 +76,20 @@ pub struct CoSimulation {
     pub can_handle_variable_communication_step_size: bool,
     #[serde(rename = "@canInterpolateInputs")]
     pub can_interpolate_inputs: bool,
+    #[serde(rename = "@maxOutputDerivativeOrder")]
+    pub max_output_derivative_order: u32,
+    #[serde(rename = "@canRunAsynchronuously")]
+    pub can_run_asynchronously: bool,
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
     #[serde(rename = "@canNotUseMemoryManagementFunctions")]
     pub can_not_use_memory_management_functions: bool,
+    #[serde(rename = "@canGetAndSetFMUstate")]
+    pub can_get_and_set_fmu_state: bool,
+    #[serde(rename = "@canSerializeFMUstate")]
+    pub can_serialize_fmu_state: bool,
+    #[serde(rename = "@providesDirectionalDerivative")]
+    pub provides_directional_derivative: bool,
 }
 
 #[derive(Serialize)]
@@ -173,6 +205,8 @@ pub struct Real {
     pub nominal: Number,
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
     pub start: Option<Number>,
+    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
+    pub derivative: Option<u32>,
 }
 
 #[derive(Serialize)]
@@ -197,6 +231,8 @@ pub struct Enumeration {
 pub struct ModelStructure {
     #[serde(rename = "Outputs")]
     pub outputs: Unknowns,
+    #[serde(rename = "Derivatives")]
+    pub derivatives: Unknowns,
     #[serde(rename = "InitialUnknowns")]
     pub initial_unknowns: Unknowns,
 }

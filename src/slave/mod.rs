@@ -1,22 +1,29 @@
-//! What FMI means for this actuator, in safe Rust: phases, checks, and the run.
+//! What FMI means for this actuator, in safe Rust: phases, checks, the run of a
+//! co-simulation, model exchange, derivatives and saved states.
 //!
 //! Nothing here knows of pointers or of XML. Each call checks everything before
 //! it changes anything.
 
+mod derivatives;
+mod exchange;
 mod fault;
 mod phase;
 mod run;
+mod state;
 mod values;
 
+pub use exchange::{Exchange, INDICATOR_COUNT, STATE_COUNT, Update};
 pub use fault::{Event, Fault, Severity};
-pub use phase::{Call, Phase};
+pub use phase::{Call, Interface, Phase};
 pub use run::Run;
+pub use state::LAYOUT as STATE_LAYOUT;
 pub use values::Type;
+
+use serde::{Deserialize, Serialize};
 
 use crate::scene::Scene;
 use crate::solver::double::Double;
-use crate::variables::{Access, VARIABLES};
-use crate::view::View;
+use crate::view::{Place, View};
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -25,7 +32,7 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 pub const TOLERANCE_RANGE: [f64; 2] = [1e-14, 1e-2];
 
 /// When the simulation begins, when it ends, and how accurate it is to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Experiment {
     start_time: f64,
     stop_time: Option<f64>,
@@ -40,14 +47,25 @@ impl Experiment {
     };
 }
 
+/// Where the motion is.
+#[derive(Debug, Serialize, Deserialize)]
+enum Course {
+    /// Initialization has not ended.
+    Ahead,
+    /// We integrate it.
+    Run(Box<Run>),
+    /// The host integrates it.
+    Exchange(Exchange),
+}
+
 /// One instance of the actuator.
-#[derive(Debug)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Instance {
+    interface: Interface,
     phase: Phase,
     scene: Scene,
     experiment: Experiment,
-    /// The motion; there is none before initialization has ended.
-    run: Option<Box<Run>>,
+    course: Course,
     /// Bit k: input k has derivatives that no step has used yet.
     fresh_derivatives: u32,
 }
@@ -59,14 +77,21 @@ impl Default for Instance {
 }
 
 impl Instance {
-    /// An actuator with all variables at their start values.
+    /// An actuator for co-simulation with all variables at their start values.
     #[must_use]
     pub fn new() -> Instance {
+        Instance::of(Interface::CoSimulation)
+    }
+
+    /// The same for either kind of FMU.
+    #[must_use]
+    pub fn of(interface: Interface) -> Instance {
         Instance {
+            interface,
             phase: Phase::Instantiated,
             scene: Scene::at_start(),
             experiment: Experiment::DEFAULT,
-            run: None,
+            course: Course::Ahead,
             fresh_derivatives: 0,
         }
     }
@@ -77,15 +102,50 @@ impl Instance {
         self.phase
     }
 
+    /// Whether the standard allows this call at present.
+    ///
+    /// # Errors
+    /// Error where it does not, Fatal after a fatal error.
+    pub fn check(&self, call: Call) -> Result<(), Fault> {
+        if self.phase.permits(call) && call.is_part_of(self.interface) {
+            return Ok(());
+        }
+        let severity = if self.phase == Phase::Fatal {
+            Severity::Fatal
+        } else {
+            Severity::Error
+        };
+        let kind = match self.interface {
+            Interface::CoSimulation => "co-simulation",
+            Interface::ModelExchange => "model exchange",
+        };
+        let text = match call {
+            Call::CancelStep => "no step is in progress: fmi2DoStep returns when it is done".into(),
+            _ => format!(
+                "not allowed in the phase \"{}\" of {kind}",
+                self.phase.name()
+            ),
+        };
+        Err(Fault { severity, text })
+    }
+
     /// What can be read at present.
     #[must_use]
     pub fn view(&self) -> View<'_> {
-        let run = self.run.as_deref();
+        let scene = &self.scene;
+        let (place, time, collapse) = match &self.course {
+            Course::Run(run) => (Place::On(run.trajectory()), run.time(), run.collapse()),
+            Course::Exchange(now) => (Place::At(now.state), now.time, now.collapse),
+            Course::Ahead => {
+                let time = Double::new(self.experiment.start_time);
+                (Place::At(scene.start), time, None)
+            }
+        };
         View {
-            scene: &self.scene,
-            trajectory: run.map(Run::trajectory),
-            time: run.map_or(Double::new(self.experiment.start_time), Run::time),
-            collapse: run.and_then(Run::collapse),
+            scene,
+            place,
+            time,
+            collapse,
         }
     }
 
@@ -155,9 +215,17 @@ impl Instance {
         }
         let time = Double::new(self.experiment.start_time);
         self.scene.drive.since = time;
-        let tolerance = self.experiment.tolerance;
-        self.run = Some(Box::new(Run::new(&self.scene, time, tolerance)));
-        self.phase = Phase::StepComplete;
+        match self.interface {
+            Interface::CoSimulation => {
+                let tolerance = self.experiment.tolerance;
+                self.course = Course::Run(Box::new(Run::new(&self.scene, time, tolerance)));
+                self.phase = Phase::StepComplete;
+            }
+            Interface::ModelExchange => {
+                self.course = Course::Exchange(Exchange::new(&self.scene, time));
+                self.phase = Phase::EventMode;
+            }
+        }
         Ok(())
     }
 
@@ -168,7 +236,7 @@ impl Instance {
     /// Error for a step that cannot be meant, with nothing changed; Discard
     /// where the step ends early, at [`Instance::last_successful_time`].
     pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
-        let Some(run) = self.run.as_deref_mut() else {
+        let Course::Run(run) = &mut self.course else {
             return Err(Fault::error("the initialization has not been ended".into()));
         };
         run.check_step(current, step, self.experiment.stop_time)?;
@@ -187,7 +255,7 @@ impl Instance {
 
     /// Puts everything back to how it was after instantiation.
     pub fn reset(&mut self) {
-        *self = Instance::new();
+        *self = Instance::of(self.interface);
     }
 
     /// Makes every later call fail: something happened that must not happen.
@@ -207,68 +275,16 @@ impl Instance {
         self.phase == Phase::StepFailed
     }
 
-    /// Sets derivatives of inputs, each given by value reference, order and value.
-    ///
-    /// An input with derivatives is a polynomial in the time since they were
-    /// set. It stays so until its value or a derivative is set again.
-    ///
-    /// # Errors
-    /// Error for a variable that is no input, an order outside 1 to 4 or a
-    /// value that is not finite; then nothing is set.
-    pub fn set_input_derivatives(
-        &mut self,
-        references: &[u32],
-        orders: &[i32],
-        derivatives: &[f64],
-    ) -> Result<(), Fault> {
-        use crate::actuator::drive::HIGHEST_DERIVATIVE;
-        for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
-            let variable = values::row(reference)?;
-            let name = variable.name;
-            if !matches!(variable.access, Access::Input { .. }) {
-                return Err(Fault::error(format!(
-                    "{name} is not an input; derivatives can be set for inputs only"
-                )));
-            }
-            if !(1..=HIGHEST_DERIVATIVE as i32).contains(&order) {
-                return Err(Fault::error(format!(
-                    "the derivative of {name} of order {order} cannot be set; \
-                     orders 1 to {HIGHEST_DERIVATIVE} can"
-                )));
-            }
-            if !value.is_finite() {
-                return Err(Fault::error(format!(
-                    "the derivative {value} of {name} is not a finite number"
-                )));
-            }
-        }
-        self.bring_drive_up_to_date();
-        for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
-            let Access::Input { of, .. } = VARIABLES[reference as usize].access else {
-                continue;
-            };
-            let input = of(&mut self.scene);
-            let bit = 1 << reference;
-            if self.fresh_derivatives & bit == 0 {
-                input.clear_derivatives();
-                self.fresh_derivatives |= bit;
-            }
-            input.set_derivative(order as usize, value);
-        }
-        self.changed();
-        Ok(())
-    }
-
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
-        if let Some(run) = &self.run {
+        if let Course::Run(run) = &self.course {
             self.scene.drive = self.scene.drive.rebased(run.time());
         }
     }
 
     /// The scene is not what the run has integrated so far.
     fn changed(&mut self) {
-        if let Some(run) = &mut self.run {
+        if let Course::Run(run) = &mut self.course {
             run.scene_changed();
         }
     }

@@ -1,6 +1,8 @@
 //! The motion of an initialized actuator from communication point to
 //! communication point.
 
+use serde::{Deserialize, Serialize};
+
 use super::{Event, Fault};
 use crate::actuator::Motion;
 use crate::scene::{OnPullIn, Scene};
@@ -17,7 +19,7 @@ const TIME_ROUNDING: f64 = 1e-9;
 const STEP_ROUNDING: f64 = 1e-6;
 
 /// A running simulation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Run {
     /// Start time and all steps summed up.
     time: Double,
@@ -41,6 +43,25 @@ impl Run {
             collapse: None,
             stale: false,
         }
+    }
+
+    /// Whether the numbers can be those of a motion that has followed the scene.
+    pub(super) fn is_sound(&self, scene: &Scene) -> bool {
+        let collapsed = self.collapse.map_or(0.0, |collapse| collapse.time.value());
+        // A motion that is stale is made anew before it is followed.
+        let follows = self.stale || {
+            let Motion {
+                coefficients,
+                drive,
+            } = self.motion;
+            coefficients == scene.motion().coefficients
+                && drive.harmonic == scene.drive.harmonic
+                && drive.is_finite()
+        };
+        follows
+            && self.trajectory.is_sound()
+            && self.time.value().is_finite()
+            && collapsed.is_finite()
     }
 
     /// The present time of the model.
@@ -156,7 +177,8 @@ impl Run {
     }
 }
 
-fn describe_collapse(scene: &Scene, limit: Limit, time: f64) -> String {
+/// A collapse in words.
+pub(super) fn describe_collapse(scene: &Scene, limit: Limit, time: f64) -> String {
     match limit {
         Limit::Upper => format!(
             "the actuator was pulled in: at time {time} its stretch reached lambda_max = {}",

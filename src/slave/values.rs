@@ -132,9 +132,16 @@ impl Instance {
                 "{name} is a result of the model and cannot be set"
             )));
         }
-        if variable.variability == Variability::Fixed && self.phase == Phase::StepComplete {
+        let begun = !matches!(self.phase, Phase::Instantiated | Phase::Initialization);
+        if variable.variability == Variability::Fixed && begun {
             return Err(Fault::error(format!(
                 "{name} is fixed after initialization; set it before, or call fmi2Reset first"
+            )));
+        }
+        if variable.variability == Variability::Tunable && self.phase == Phase::ContinuousTime {
+            return Err(Fault::error(format!(
+                "{name} is a tunable parameter; it can be set in event mode, \
+                 not in continuous-time mode"
             )));
         }
         Ok(())

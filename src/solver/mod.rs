@@ -7,11 +7,13 @@
 //! * [`orbit`]: a motion that repeats;
 //! * [`extremes`]: how far the motion has swung;
 //! * `pieces`: the segments that are kept;
+//! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives;
 //! * [`trajectory`]: segments one after another, reused where the motion repeats.
 
 pub mod collocation;
 pub mod double;
 pub mod extremes;
+pub mod jet;
 pub mod limits;
 pub mod number;
 pub mod orbit;

@@ -7,8 +7,10 @@
 
 use crate::actuator::drive::Polynomial;
 use crate::scene::Scene;
-use crate::view::View;
+use crate::solver::jet::Dual;
+use crate::view::{Moment, Series, View};
 
+mod rows;
 mod table;
 
 pub use table::VARIABLES;
@@ -74,13 +76,33 @@ pub enum Access {
         /// Sets it.
         set: fn(&mut Scene, f64),
     },
-    /// A result; the names are the settings on which its initial value depends.
+    /// A result.
     Result {
         /// Computes it.
         get: fn(&View) -> f64,
-        /// Names of the variables that determine it at the start.
-        from: &'static [&'static str],
+        /// Its derivatives, where it has any that are offered.
+        derivatives: Option<Derivatives>,
+        /// On what it depends.
+        dependencies: Dependencies,
     },
+}
+
+/// The derivatives of a result.
+#[derive(Clone, Copy)]
+pub struct Derivatives {
+    /// The result as it changes in a direction.
+    pub along: fn(&Moment<Dual>) -> Dual,
+    /// The result as a series in time.
+    pub from_now_on: fn(&Moment<Series>) -> Series,
+}
+
+/// The names of the variables on which a result depends.
+#[derive(Clone, Copy)]
+pub struct Dependencies {
+    /// Inputs and states that determine it during the motion.
+    pub now: &'static [&'static str],
+    /// Inputs and parameters that determine it at the start.
+    pub at_start: &'static [&'static str],
 }
 
 /// One variable.
@@ -98,6 +120,8 @@ pub struct Variable {
     pub kind: Kind,
     /// The value before the host sets another; none for results.
     pub start: Option<f64>,
+    /// The name of the state of which this is the derivative.
+    pub derivative_of: Option<&'static str>,
     /// How it is read and set.
     pub access: Access,
 }
@@ -110,6 +134,54 @@ pub const ON_PULL_IN: [(&str, &str); 2] = [
         "the step ends there and the host is asked to terminate",
     ),
 ];
+
+/// Value references of the continuous states, in the order of the table.
+pub const STATES: [u32; ORDER] = states();
+
+/// Value references of their derivatives, in the same order.
+pub const DERIVATIVES: [u32; ORDER] = derivatives();
+
+/// Number of continuous states.
+const ORDER: usize = 2;
+
+const fn states() -> [u32; ORDER] {
+    let mut states = [0; ORDER];
+    let (mut found, mut row) = (0, 0);
+    while row < VARIABLES.len() {
+        if row_of_derivative(VARIABLES[row].name).is_some() {
+            states[found] = row as u32;
+            found += 1;
+        }
+        row += 1;
+    }
+    assert!(found == ORDER, "another number of states");
+    states
+}
+
+const fn derivatives() -> [u32; ORDER] {
+    let mut derivatives = [0; ORDER];
+    let mut i = 0;
+    while i < ORDER {
+        if let Some(row) = row_of_derivative(VARIABLES[STATES[i] as usize].name) {
+            derivatives[i] = row as u32;
+        }
+        i += 1;
+    }
+    derivatives
+}
+
+const fn row_of_derivative(name: &str) -> Option<usize> {
+    let mut row = 0;
+    while row < VARIABLES.len() {
+        if let Some(state) = VARIABLES[row].derivative_of
+            && same(state, name)
+        {
+            return Some(row);
+        }
+        row += 1;
+    }
+    None
+}
 
 /// Value reference of a variable, by its name.
 #[must_use]

@@ -1,9 +1,11 @@
 //! The rows of the table.
 
-use super::{Access, Causality, Kind, Variability, Variable, checked};
-use crate::actuator::drive::Polynomial;
-use crate::scene::{OnPullIn, Scene};
-use crate::view::View;
+use super::rows::{
+    UNDECLARED, depends, formula, input, parameter, positive, real, result, unlimited, value,
+};
+use super::{Causality, Derivatives, Kind, Variability, Variable, checked};
+use crate::scene::OnPullIn;
+use crate::view::Quantities;
 
 use Causality::{Local, Output};
 use Variability::{Fixed, Tunable};
@@ -146,126 +148,149 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         "in-plane stretch",
         Output,
         real(1e-3, 1e6, 1.0),
-        |view| view.stretch(),
-        &["lambda_start"],
+        formula!(stretch),
+        depends(&["lambda"], &["lambda_start"]),
     ),
     result(
         "lambda3",
         "thickness stretch, 1/lambda^2",
         Output,
         real(1e-12, 1e6, 1.0),
-        |view| view.thickness_stretch(),
-        &["lambda_start"],
+        formula!(thickness_stretch),
+        depends(&["lambda"], &["lambda_start"]),
     ),
     result(
         "pulled_in",
         "whether the stretch has reached lambda_min or lambda_max",
         Output,
         Kind::Boolean,
-        |view| f64::from(u8::from(view.collapse.is_some())),
-        &[],
+        value(|view| f64::from(u8::from(view.collapse.is_some()))),
+        depends(&[], &[]),
     ),
     result(
         "lambda_dot",
         "rate of lambda",
         Local,
         unlimited(0.1),
-        |view| view.stretch_rate(),
-        &["lambda_dot_start"],
-    ),
+        formula!(stretch_rate),
+        depends(&["lambda_dot"], &["lambda_dot_start"]),
+    )
+    .derivative_of("lambda"),
     result(
         "lambda3_dot",
         "rate of lambda3",
         Local,
         unlimited(0.1),
-        |view| view.thickness_stretch_rate(),
-        &["lambda_start", "lambda_dot_start"],
+        formula!(thickness_stretch_rate),
+        depends(
+            &["lambda", "lambda_dot"],
+            &["lambda_start", "lambda_dot_start"],
+        ),
     ),
     result(
         "lambda_ddot",
         "second derivative of lambda by the equation of motion",
         Local,
         unlimited(0.01),
-        |view| view.stretch_acceleration(),
-        &[],
-    ),
+        formula!(stretch_acceleration),
+        depends(
+            &["phi", "S", "lambda", "lambda_dot"],
+            &[
+                "phi",
+                "S",
+                "c",
+                "gamma_s",
+                "tau_s",
+                "E_s",
+                "lambda_start",
+                "lambda_dot_start",
+                "phi_ac",
+                "omega_ac",
+                "phase_ac",
+            ],
+        ),
+    )
+    .derivative_of("lambda_dot"),
     result(
         "phi_total",
         "phi with the built-in voltage added",
         Local,
         real(-2e3, 2e3, 1.0),
-        |view| view.total_voltage(),
-        &[],
+        formula!(total_voltage),
+        depends(&["phi"], &["phi", "phi_ac", "omega_ac", "phase_ac"]),
     ),
     result(
         "electric_field",
         "true electric field, phi_total*lambda^2",
         Local,
         real(-2e15, 2e15, 1.0),
-        |view| view.electric_field(),
-        &[],
+        formula!(electric_field),
+        depends(
+            &["phi", "lambda"],
+            &["phi", "lambda_start", "phi_ac", "omega_ac", "phase_ac"],
+        ),
     ),
     result(
         "hamiltonian",
         "Hamiltonian, constant while phi and S are; 0 at rest at lambda = 1",
         Local,
         unlimited(1.0),
-        |view| view.energy(),
-        &[],
+        value(|view| view.energy()),
+        UNDECLARED,
     ),
     result(
         "phi_pull_in",
         "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf where there is none",
         Local,
         positive(),
-        |view| {
+        value(|view| {
             view.dynamic_threshold()
                 .map_or(f64::INFINITY, |t| t.voltage)
-        },
-        &[],
+        }),
+        UNDECLARED,
     ),
     result(
         "lambda3_pull_in",
         "thickness stretch at the dynamic pull-in voltage; 0 where there is none",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| {
+        value(|view| {
             view.dynamic_threshold()
                 .map_or(0.0, |t| t.thickness_stretch)
-        },
-        &[],
+        }),
+        UNDECLARED,
     ),
     result(
         "phi_pull_in_static",
         "static pull-in voltage for the present S; +inf where there is none",
         Local,
         positive(),
-        |view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage),
-        &[],
+        value(|view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage)),
+        UNDECLARED,
     ),
     result(
         "lambda3_pull_in_static",
         "thickness stretch at the static pull-in voltage; 0 where there is none",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| view.static_threshold().map_or(0.0, |t| t.thickness_stretch),
-        &[],
+        value(|view| view.static_threshold().map_or(0.0, |t| t.thickness_stretch)),
+        UNDECLARED,
     ),
     result(
         "pull_in_margin",
         "by how much the voltage may grow until dynamic pull-in; negative beyond, +inf where there is none",
         Local,
         unlimited(1.0),
-        |view| view.pull_in_margin(),
-        &[],
+        value(|view| view.pull_in_margin()),
+        UNDECLARED,
     ),
     result(
         "pull_in_time",
         "time at which pulled_in became true; +inf until then",
         Local,
         unlimited(1.0),
-        |view| view.collapse.map_or(f64::INFINITY, |c| c.time.value()),
-        &[],
+        value(|view| view.collapse.map_or(f64::INFINITY, |c| c.time.value())),
+        UNDECLARED,
     ),
     parameter(
         "record_extremes",
@@ -281,111 +306,36 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         "smallest lambda since the start time; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| view.extremes().map_or(0.0, |e| e.lowest),
-        &[],
+        value(|view| view.extremes().map_or(0.0, |e| e.lowest)),
+        UNDECLARED,
     ),
     result(
         "lambda_highest",
         "largest lambda since the start time; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| view.extremes().map_or(0.0, |e| e.highest),
-        &[],
+        value(|view| view.extremes().map_or(0.0, |e| e.highest)),
+        UNDECLARED,
     ),
     result(
         "lambda3_lowest",
         "smallest lambda3 since the start time; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| {
+        value(|view| {
             view.extremes()
                 .map_or(0.0, |e| 1.0 / (e.highest * e.highest))
-        },
-        &[],
+        }),
+        UNDECLARED,
     ),
     result(
         "lambda3_highest",
         "largest lambda3 since the start time; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
-        |view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest)),
-        &[],
+        value(|view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest))),
+        UNDECLARED,
     ),
 ]);
 
 const COUNT: usize = 34;
-
-const fn real(min: f64, max: f64, nominal: f64) -> Kind {
-    Kind::Real { min, max, nominal }
-}
-
-/// A result that is not negative and has no largest value.
-const fn positive() -> Kind {
-    real(0.0, f64::MAX, 1.0)
-}
-
-/// A result without limits.
-const fn unlimited(nominal: f64) -> Kind {
-    real(f64::MIN, f64::MAX, nominal)
-}
-
-const fn input(
-    name: &'static str,
-    description: &'static str,
-    kind: Kind,
-    get: fn(&View) -> f64,
-    of: fn(&mut Scene) -> &mut Polynomial,
-) -> Variable {
-    Variable {
-        name,
-        description,
-        causality: Causality::Input,
-        variability: Variability::Continuous,
-        kind,
-        start: Some(0.0),
-        access: Access::Input { get, of },
-    }
-}
-
-const fn parameter(
-    name: &'static str,
-    description: &'static str,
-    variability: Variability,
-    kind: Kind,
-    start: f64,
-    get: fn(&Scene) -> f64,
-    set: fn(&mut Scene, f64),
-) -> Variable {
-    Variable {
-        name,
-        description,
-        causality: Causality::Parameter,
-        variability,
-        kind,
-        start: Some(start),
-        access: Access::Setting { get, set },
-    }
-}
-
-const fn result(
-    name: &'static str,
-    description: &'static str,
-    causality: Causality,
-    kind: Kind,
-    get: fn(&View) -> f64,
-    from: &'static [&'static str],
-) -> Variable {
-    let variability = match kind {
-        Kind::Boolean | Kind::Enumeration => Variability::Discrete,
-        Kind::Real { .. } => Variability::Continuous,
-    };
-    Variable {
-        name,
-        description,
-        causality,
-        variability,
-        kind,
-        start: None,
-        access: Access::Result { get, from },
-    }
-}

@@ -39,10 +39,11 @@ proptest! {
     /// number; a refused setter leaves the value as it was.
     #[test]
     fn random_calls_are_answered(
-        phase in prop::sample::select(PHASES.to_vec()),
+        (kind, phases) in prop::sample::select(KINDS.to_vec()),
+        phase in 0..5_usize,
         calls in prop::collection::vec(random_call(), 1..30),
     ) {
-        let host = Host::in_phase(phase);
+        let host = Host::in_phase_of(kind, phases[phase]);
         let c = host.component;
         let mut time = 0.0;
         for call in calls {

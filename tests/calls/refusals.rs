@@ -71,7 +71,7 @@ fn null_pointers_are_refused_everywhere() {
     let host = Host::in_phase("stepping");
     let c = host.component;
     unsafe {
-        for (_, function, _) in TABLE {
+        for (_, function, ..) in TABLE {
             assert_eq!(function(null_mut()), ERROR);
         }
         fmi2FreeInstance(null_mut());
@@ -119,12 +119,7 @@ fn instances_are_refused_with_a_reason() {
             guid.as_ptr(),
             "the instance name is a null pointer",
         ),
-        (
-            c"a".as_ptr(),
-            fmi2Type_fmi2ModelExchange,
-            guid.as_ptr(),
-            "only co-simulation",
-        ),
+        (c"a".as_ptr(), 7, guid.as_ptr(), "there is no FMU type 7"),
     ];
     for (name, kind, guid, message) in cases {
         let host = Host::with(name, kind, guid);

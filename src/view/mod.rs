@@ -1,6 +1,12 @@
 //! What a host can read of the actuator at the present communication point.
 //! Each quantity is computed when it is read, and only then.
 
+mod quantities;
+
+pub use quantities::{Direction, HIGHEST_ORDER, Moment, Quantities, Series};
+
+use serde::{Deserialize, Serialize};
+
 use crate::actuator::motion::{self, Load};
 use crate::actuator::{Coefficients, Drive};
 use crate::pull_in::{self, Threshold};
@@ -8,11 +14,12 @@ use crate::scene::{OnPullIn, Scene};
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
+use crate::solver::jet::Dual;
 use crate::solver::limits::Limit;
 use crate::solver::trajectory::Trajectory;
 
 /// The moment at which the motion reached a limit of the stretch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Collapse {
     /// The limit.
     pub limit: Limit,
@@ -20,44 +27,47 @@ pub struct Collapse {
     pub time: Double,
 }
 
+/// Where the state of the motion is known from.
+#[derive(Clone, Copy, Debug)]
+pub enum Place<'a> {
+    /// It is this one: at the start, or where the host integrates.
+    At(State),
+    /// The present of this trajectory.
+    On(&'a Trajectory),
+}
+
 /// The actuator at the present time.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// What the host has set.
     pub scene: &'a Scene,
-    /// The motion so far; none before it has begun.
-    pub trajectory: Option<&'a Trajectory>,
+    /// The state of the motion.
+    pub place: Place<'a>,
     /// Time of the model.
     pub time: Double,
     /// Whether and when the motion came to a limit.
     pub collapse: Option<Collapse>,
 }
 
-impl View<'_> {
-    /// Stretch λ.
-    #[must_use]
-    pub fn stretch(&self) -> f64 {
-        match (self.held(), self.trajectory) {
+impl Quantities<f64> for View<'_> {
+    fn stretch(&self) -> f64 {
+        match (self.held(), self.place) {
             (Some(Limit::Lower), _) => self.scene.limits.lower,
             (Some(Limit::Upper), _) => self.scene.limits.upper,
-            (None, Some(trajectory)) => trajectory.position(),
-            (None, None) => self.scene.start.position,
+            (None, Place::On(trajectory)) => trajectory.position(),
+            (None, Place::At(state)) => state.position,
         }
     }
 
-    /// Stretch rate dλ/dt; 0 where the actuator is held at a limit.
-    #[must_use]
-    pub fn stretch_rate(&self) -> f64 {
-        match (self.held(), self.trajectory) {
+    fn stretch_rate(&self) -> f64 {
+        match (self.held(), self.place) {
             (Some(_), _) => 0.0,
-            (None, Some(trajectory)) => trajectory.rate(),
-            (None, None) => self.scene.start.rate,
+            (None, Place::On(trajectory)) => trajectory.rate(),
+            (None, Place::At(state)) => state.rate,
         }
     }
 
-    /// d²λ/dt² by Eq. 16; 0 where the actuator is held at a limit.
-    #[must_use]
-    pub fn stretch_acceleration(&self) -> f64 {
+    fn stretch_acceleration(&self) -> f64 {
         if self.held().is_some() {
             return 0.0;
         }
@@ -69,12 +79,12 @@ impl View<'_> {
         )
     }
 
-    /// The extremes of the stretch since the start, where they are recorded.
-    #[must_use]
-    pub fn extremes(&self) -> Option<Extremes> {
-        self.trajectory?.extremes()
+    fn total_voltage(&self) -> f64 {
+        self.scene.drive.at(self.time).voltage(0.0)
     }
+}
 
+impl View<'_> {
     /// The limit at which the actuator is held. Where the simulation ends
     /// instead, the state on arrival remains.
     fn held(&self) -> Option<Limit> {
@@ -84,17 +94,34 @@ impl View<'_> {
         }
     }
 
-    /// Thickness stretch λ3 = 1/λ².
+    /// The extremes of the stretch since the start, where they are recorded.
     #[must_use]
-    pub fn thickness_stretch(&self) -> f64 {
-        let stretch = self.stretch();
-        1.0 / (stretch * stretch)
+    pub fn extremes(&self) -> Option<Extremes> {
+        match self.place {
+            Place::On(trajectory) => trajectory.extremes(),
+            Place::At(_) => None,
+        }
     }
 
-    /// dλ3/dt = −2 λ⁻³ dλ/dt.
+    /// Stretch and stretch rate.
     #[must_use]
-    pub fn thickness_stretch_rate(&self) -> f64 {
-        -2.0 * self.stretch_rate() / self.stretch().powi(3)
+    pub fn state(&self) -> State {
+        State {
+            position: self.stretch(),
+            rate: self.stretch_rate(),
+        }
+    }
+
+    /// The present as it changes in a direction.
+    #[must_use]
+    pub fn along(&self, direction: &Direction) -> Moment<Dual> {
+        Moment::along(self.scene, self.time, self.state(), self.held(), direction)
+    }
+
+    /// The motion from now on, as power series in the time.
+    #[must_use]
+    pub fn from_now_on(&self) -> Moment<Series> {
+        Moment::from_now_on(self.scene, self.time, self.state(), self.held())
     }
 
     /// The voltage φ that the host drives, without the built-in drive.
@@ -113,27 +140,10 @@ impl View<'_> {
         prestress.at(self.time.since(*since))
     }
 
-    /// Voltage φ with the built-in alternating voltage added.
-    #[must_use]
-    pub fn total_voltage(&self) -> f64 {
-        self.scene.drive.at(self.time).voltage(0.0)
-    }
-
-    /// The true electric field φλ², nondimensional like the voltage.
-    #[must_use]
-    pub fn electric_field(&self) -> f64 {
-        let stretch = self.stretch();
-        self.total_voltage() * stretch * stretch
-    }
-
     /// The Hamiltonian 𝓗 of Eqs. 18 and 19 under the present load.
     #[must_use]
     pub fn energy(&self) -> f64 {
-        let state = State {
-            position: self.stretch(),
-            rate: self.stretch_rate(),
-        };
-        motion::energy(&self.coefficients(), self.load(), state)
+        motion::energy(&self.coefficients(), self.load(), self.state())
     }
 
     /// The dynamic pull-in threshold at the present prestress.

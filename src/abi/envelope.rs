@@ -1,0 +1,75 @@
+//! What a serialized state travels in: a header that says what it is, and a
+//! checksum. Numbers are little-endian.
+//!
+//! ```text
+//! "DEA state", layout (u16), GUID (38 characters), length (u32), CRC-32 (u32), the saved instance
+//! ```
+
+use crate::description::GUID;
+use crate::slave::{Fault, STATE_LAYOUT};
+
+const MAGIC: &[u8] = b"DEA state";
+const LAYOUT: [u8; 2] = STATE_LAYOUT.to_le_bytes();
+
+/// Size of the envelope with these contents.
+pub fn size(contents: &[u8]) -> usize {
+    header(contents).len() + contents.len()
+}
+
+fn header(contents: &[u8]) -> Vec<u8> {
+    let length = contents.len() as u32;
+    let checksum = crc32fast::hash(contents);
+    [
+        MAGIC,
+        &LAYOUT,
+        GUID.as_bytes(),
+        &length.to_le_bytes(),
+        &checksum.to_le_bytes(),
+    ]
+    .concat()
+}
+
+/// Writes contents with their envelope into a target of the right size.
+///
+/// # Errors
+/// Error for a target of another size; then nothing is written.
+pub fn seal(contents: &[u8], target: &mut [u8]) -> Result<(), Fault> {
+    let header = header(contents);
+    if target.len() != header.len() + contents.len() {
+        return Err(Fault::error(format!(
+            "room for {} bytes was given; fmi2SerializedFMUstateSize says {}",
+            target.len(),
+            header.len() + contents.len()
+        )));
+    }
+    let (front, back) = target.split_at_mut(header.len());
+    front.copy_from_slice(&header);
+    back.copy_from_slice(contents);
+    Ok(())
+}
+
+/// The contents of an envelope.
+///
+/// # Errors
+/// Error for bytes that are no serialized state, of another version of this FMU
+/// or damaged.
+pub fn open(sealed: &[u8]) -> Result<&[u8], Fault> {
+    let fault = |why: &str| Fault::error(format!("the bytes are no state of this FMU: {why}"));
+    let rest = sealed
+        .strip_prefix(MAGIC)
+        .ok_or_else(|| fault("they do not begin like one"))?;
+    let rest = rest
+        .strip_prefix(&LAYOUT)
+        .and_then(|rest| rest.strip_prefix(GUID.as_bytes()))
+        .ok_or_else(|| fault("they are of another version of it"))?;
+    let (sizes, contents) = rest
+        .split_at_checked(8)
+        .ok_or_else(|| fault("they are incomplete"))?;
+    if sizes[..4] != (contents.len() as u32).to_le_bytes() {
+        return Err(fault("their length is not the one that they say"));
+    }
+    if sizes[4..] != crc32fast::hash(contents).to_le_bytes() {
+        return Err(fault("their checksum is wrong"));
+    }
+    Ok(contents)
+}

@@ -1,0 +1,129 @@
+//! The functions that save, restore and serialize an instance.
+
+use fmi::fmi2::binding::*;
+
+use super::component::{Component, guarded};
+use super::envelope;
+use super::pointers::{place, slice, slice_mut};
+use crate::slave::{Call, Fault};
+
+/// What stands behind an `fmi2FMUstate`: a saved instance.
+struct Saved {
+    bytes: Vec<u8>,
+}
+
+/// The state behind the pointer.
+///
+/// # Safety
+/// `state` must be null or come from [`fmi2GetFMUstate`] or
+/// [`fmi2DeSerializeFMUstate`] and not have been freed: the host owes it to us
+/// (FMI 2.0, section 2.1.8).
+unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Fault> {
+    // SAFETY: the caller's promise.
+    unsafe { place(state.cast::<Saved>(), "the state") }
+}
+
+/// Hands `bytes` to the host, in the state that it has already or in a new one.
+fn hand_out(state: &mut fmi2FMUstate, bytes: Vec<u8>) {
+    // SAFETY: null, or a state that we gave (see `saved`).
+    match unsafe { saved(*state) } {
+        Ok(old) => old.bytes = bytes,
+        Err(_) => *state = Box::into_raw(Box::new(Saved { bytes })).cast(),
+    }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(
+    c: fmi2Component,
+    FMUstate: *mut fmi2FMUstate,
+) -> fmi2Status {
+    guarded(c, "fmi2GetFMUstate", Call::State, |component| {
+        // SAFETY: see the head of this room.
+        let state = unsafe { place(FMUstate, "FMUstate") }?;
+        // SAFETY: null, or a state that we gave (see `saved`).
+        let memory = unsafe { saved(*state) }.map(|old| std::mem::take(&mut old.bytes));
+        let bytes = component.instance.save(memory.unwrap_or_default())?;
+        hand_out(state, bytes);
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
+    guarded(c, "fmi2SetFMUstate", Call::State, |component| {
+        // SAFETY: see `saved`.
+        let state = unsafe { saved(FMUstate) }?;
+        component.instance.restore(&state.bytes)?;
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeFMUstate(
+    c: fmi2Component,
+    FMUstate: *mut fmi2FMUstate,
+) -> fmi2Status {
+    guarded(c, "fmi2FreeFMUstate", Call::FreeState, |_| {
+        // SAFETY: see the head of this room.
+        if let Ok(state) = unsafe { place(FMUstate, "FMUstate") }
+            && !state.is_null()
+        {
+            // SAFETY: a state that we gave, freed once (see `saved`).
+            drop(unsafe { Box::from_raw(state.cast::<Saved>()) });
+            *state = std::ptr::null_mut();
+        }
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
+    c: fmi2Component,
+    FMUstate: fmi2FMUstate,
+    size: *mut usize,
+) -> fmi2Status {
+    guarded(c, "fmi2SerializedFMUstateSize", Call::State, |_| {
+        // SAFETY: see `saved`.
+        let state = unsafe { saved(FMUstate) }?;
+        // SAFETY: see the head of this room.
+        *unsafe { place(size, "size") }? = envelope::size(&state.bytes);
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializeFMUstate(
+    c: fmi2Component,
+    FMUstate: fmi2FMUstate,
+    serializedState: *mut fmi2Byte,
+    size: usize,
+) -> fmi2Status {
+    guarded(c, "fmi2SerializeFMUstate", Call::State, |_| {
+        // SAFETY: see `saved`.
+        let state = unsafe { saved(FMUstate) }?;
+        // SAFETY: see the head of this room; any byte is as good as another.
+        let target = unsafe { slice_mut(serializedState.cast::<u8>(), size, "serializedState") }?;
+        envelope::seal(&state.bytes, target)?;
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+    c: fmi2Component,
+    serializedState: *const fmi2Byte,
+    size: usize,
+    FMUstate: *mut fmi2FMUstate,
+) -> fmi2Status {
+    let body = |component: &mut Component| {
+        // SAFETY: see the head of this room; any byte is as good as another.
+        let sealed = unsafe { slice(serializedState.cast::<u8>(), size, "serializedState") }?;
+        // SAFETY: see the head of this room.
+        let state = unsafe { place(FMUstate, "FMUstate") }?;
+        let bytes = envelope::open(sealed)?;
+        component.instance.saved(bytes)?;
+        hand_out(state, bytes.to_vec());
+        Ok(None)
+    };
+    guarded(c, "fmi2DeSerializeFMUstate", Call::State, body)
+}

@@ -1,0 +1,167 @@
+//! The functions of co-simulation.
+
+use fmi::fmi2::binding::*;
+
+use super::component::guarded;
+use super::pointers::{place, slice, slice_mut};
+use crate::slave::{Call, Fault};
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2SetRealInputDerivatives",
+        Call::SetInputDerivatives,
+        |component| {
+            // SAFETY: see the head of this room.
+            let references = unsafe { slice(vr, nvr, "vr") }?;
+            // SAFETY: see the head of this room.
+            let orders = unsafe { slice(order, nvr, "order") }?;
+            // SAFETY: see the head of this room.
+            let values = unsafe { slice(value, nvr, "value") }?;
+            component
+                .instance
+                .set_input_derivatives(references, orders, values)?;
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    guarded(
+        c,
+        "fmi2GetRealOutputDerivatives",
+        Call::GetOutputDerivatives,
+        |component| {
+            // SAFETY: see the head of this room.
+            let references = unsafe { slice(vr, nvr, "vr") }?;
+            // SAFETY: see the head of this room.
+            let orders = unsafe { slice(order, nvr, "order") }?;
+            // SAFETY: see the head of this room.
+            let values = unsafe { slice_mut(value, nvr, "value") }?;
+            component
+                .instance
+                .output_derivatives(references, orders, |place, number| values[place] = number)?;
+            Ok(None)
+        },
+    )
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    guarded(c, "fmi2DoStep", Call::DoStep, |component| {
+        component
+            .instance
+            .do_step(currentCommunicationPoint, communicationStepSize)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+    // No phase permits it, since no step is ever in progress.
+    guarded(c, "fmi2CancelStep", Call::CancelStep, |_| Ok(None))
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Status,
+) -> fmi2Status {
+    guarded(c, "fmi2GetStatus", Call::GetStatus, |component| {
+        // SAFETY: see the head of this room.
+        let value = unsafe { place(value, "value") }?;
+        if s != fmi2StatusKind_fmi2DoStepStatus {
+            return Err(no_such_status());
+        }
+        *value = if component.instance.wants_to_terminate() {
+            fmi2Status_fmi2Discard
+        } else {
+            fmi2Status_fmi2OK
+        };
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    guarded(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
+        // SAFETY: see the head of this room.
+        let value = unsafe { place(value, "value") }?;
+        if s != fmi2StatusKind_fmi2LastSuccessfulTime {
+            return Err(no_such_status());
+        }
+        *value = component.instance.last_successful_time();
+        Ok(None)
+    })
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBooleanStatus(
+    c: fmi2Component,
+    s: fmi2StatusKind,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    guarded(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
+        // SAFETY: see the head of this room.
+        let value = unsafe { place(value, "value") }?;
+        if s != fmi2StatusKind_fmi2Terminated {
+            return Err(no_such_status());
+        }
+        *value = component.instance.wants_to_terminate().into();
+        Ok(None)
+    })
+}
+
+/// Statuses of a type in which there is nothing to tell.
+macro_rules! no_status {
+    ($($function:ident: $value:ty;)*) => {$(
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $function(
+            c: fmi2Component,
+            _s: fmi2StatusKind,
+            value: *mut $value,
+        ) -> fmi2Status {
+            guarded(c, stringify!($function), Call::GetStatus, |_| {
+                // SAFETY: see the head of this room.
+                unsafe { place(value, "value") }?;
+                Err(no_such_status())
+            })
+        }
+    )*};
+}
+
+no_status! {
+    fmi2GetIntegerStatus: fmi2Integer;
+    fmi2GetStringStatus: fmi2String;
+}
+
+fn no_such_status() -> Fault {
+    Fault::discard(
+        "this status is not available: steps are done when fmi2DoStep returns; ask for \
+         fmi2DoStepStatus (Status), fmi2LastSuccessfulTime (Real) or fmi2Terminated (Boolean)"
+            .into(),
+    )
+}

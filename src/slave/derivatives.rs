@@ -1,0 +1,198 @@
+//! Derivatives of inputs and outputs with respect to time, and directional
+//! derivatives.
+
+use super::phase::Phase;
+use super::{Fault, Instance, values};
+use crate::actuator::drive::HIGHEST_DERIVATIVE;
+use crate::scene::Scene;
+use crate::solver::State;
+use crate::variables::{Access, Causality, Derivatives, Kind, STATES, VARIABLES, Variable};
+use crate::view::{Direction, HIGHEST_ORDER};
+
+impl Instance {
+    /// Sets derivatives of inputs, each given by value reference, order and value.
+    ///
+    /// An input with derivatives is a polynomial in the time since they were
+    /// set. It stays so until its value or a derivative is set again.
+    ///
+    /// # Errors
+    /// Error for a variable that is no input, an order outside 1 to 4 or a
+    /// value that is not finite; then nothing is set.
+    pub fn set_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        derivatives: &[f64],
+    ) -> Result<(), Fault> {
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
+            let variable = values::row(reference)?;
+            let name = variable.name;
+            if !matches!(variable.access, Access::Input { .. }) {
+                return Err(Fault::error(format!(
+                    "{name} is not an input; derivatives can be set for inputs only"
+                )));
+            }
+            check_order(name, order, HIGHEST_DERIVATIVE)?;
+            check_finite(name, value)?;
+        }
+        self.bring_drive_up_to_date();
+        for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
+            let Access::Input { of, .. } = VARIABLES[reference as usize].access else {
+                continue;
+            };
+            let input = of(&mut self.scene);
+            let bit = 1 << reference;
+            if self.fresh_derivatives & bit == 0 {
+                input.clear_derivatives();
+                self.fresh_derivatives |= bit;
+            }
+            input.set_derivative(order as usize, value);
+        }
+        self.changed();
+        Ok(())
+    }
+
+    /// Derivatives of outputs with respect to time at the present communication
+    /// point, each by value reference and order, passed to `store` with its
+    /// place. They are those of the motion that goes on from here, exact to
+    /// rounding; 0 where the actuator is held at a limit.
+    ///
+    /// # Errors
+    /// Error for a variable that is no real output or an order outside 1 to 5;
+    /// then nothing is stored.
+    pub fn output_derivatives(
+        &self,
+        references: &[u32],
+        orders: &[i32],
+        mut store: impl FnMut(usize, f64),
+    ) -> Result<(), Fault> {
+        for (&reference, &order) in references.iter().zip(orders) {
+            let variable = values::row(reference)?;
+            if variable.causality != Causality::Output || derivatives_of(variable).is_none() {
+                return Err(Fault::error(format!(
+                    "{} is not a real output; derivatives can be got for those only",
+                    variable.name
+                )));
+            }
+            check_order(variable.name, order, HIGHEST_ORDER)?;
+        }
+        let motion = self.view().from_now_on();
+        for (place, (&reference, &order)) in references.iter().zip(orders).enumerate() {
+            let Some(derivatives) = derivatives_of(&VARIABLES[reference as usize]) else {
+                continue;
+            };
+            let factorial: f64 = (1..=order).map(f64::from).product();
+            let series = (derivatives.from_now_on)(&motion);
+            store(place, factorial * series.term[order as usize]);
+        }
+        Ok(())
+    }
+
+    /// The change of the `unknowns` where the `knowns` (inputs, parameters and,
+    /// after initialization, states) change by the `changes` in their places:
+    /// Σ ∂unknown/∂known · change, exact to rounding, passed to `store` with
+    /// its place. A start value has an effect in initialization mode only.
+    ///
+    /// # Errors
+    /// Error for an unknown reference, an unknown without a derivative, a known
+    /// that is neither input, parameter nor state, or a change that is not
+    /// finite; then nothing is stored.
+    pub fn directional_derivative(
+        &self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        changes: &[f64],
+        mut store: impl FnMut(usize, f64),
+    ) -> Result<(), Fault> {
+        for &unknown in unknowns {
+            let variable = values::row(unknown)?;
+            if derivatives_of(variable).is_none() {
+                return Err(Fault::error(format!(
+                    "{} has no directional derivative; ask for an output, the derivative \
+                     of a state or a local that follows from them by a formula",
+                    variable.name
+                )));
+            }
+        }
+        let moment = self.view().along(&self.direction(knowns, changes)?);
+        for (place, &unknown) in unknowns.iter().enumerate() {
+            if let Some(derivatives) = derivatives_of(&VARIABLES[unknown as usize]) {
+                store(place, (derivatives.along)(&moment).slope());
+            }
+        }
+        Ok(())
+    }
+
+    /// The direction in which the `knowns` change as given: a scene and a state
+    /// filled in by the setters of the table.
+    fn direction(&self, knowns: &[u32], changes: &[f64]) -> Result<Direction, Fault> {
+        let mut direction = Direction {
+            scene: Scene::BLANK,
+            state: Scene::BLANK.start,
+        };
+        let begun = self.phase != Phase::Initialization;
+        for (&known, &change) in knowns.iter().zip(changes) {
+            let variable = values::row(known)?;
+            check_finite(variable.name, change)?;
+            match (variable.access, variable.kind) {
+                (Access::Input { of, .. }, _) => {
+                    let input = of(&mut direction.scene);
+                    input.set_value(input.value() + change);
+                }
+                (Access::Setting { get, set }, Kind::Real { .. }) => {
+                    let sum = get(&direction.scene) + change;
+                    set(&mut direction.scene, sum);
+                }
+                _ => match state_component(&mut direction.state, known) {
+                    Some(component) if begun => *component += change,
+                    _ => return Err(not_known(variable)),
+                },
+            }
+        }
+        if !begun {
+            direction.state = direction.scene.start;
+        }
+        Ok(direction)
+    }
+}
+
+/// The number of a state to which a state variable belongs.
+fn state_component(state: &mut State, reference: u32) -> Option<&mut f64> {
+    let place = STATES.iter().position(|state| *state == reference)?;
+    [&mut state.position, &mut state.rate]
+        .into_iter()
+        .nth(place)
+}
+
+fn derivatives_of(variable: &Variable) -> Option<Derivatives> {
+    match variable.access {
+        Access::Result { derivatives, .. } => derivatives,
+        _ => None,
+    }
+}
+
+fn not_known(variable: &Variable) -> Fault {
+    Fault::error(format!(
+        "{} cannot be differentiated by; only real inputs and parameters can, and the \
+         states lambda and lambda_dot after initialization",
+        variable.name
+    ))
+}
+
+fn check_order(name: &str, order: i32, highest: usize) -> Result<(), Fault> {
+    if (1..=highest as i32).contains(&order) {
+        return Ok(());
+    }
+    Err(Fault::error(format!(
+        "there is no derivative of {name} of order {order}; orders 1 to {highest} are offered"
+    )))
+}
+
+fn check_finite(name: &str, value: f64) -> Result<(), Fault> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(Fault::error(format!(
+        "the derivative {value} of {name} is not a finite number"
+    )))
+}

@@ -1,0 +1,111 @@
+//! Saving an instance and going on from there, in this process or another.
+//!
+//! A saved instance is a row of bytes without pointers: everything that decides
+//! how the simulation goes on, down to the history of the integrator. Whatever
+//! the bytes, restoring them gives an instance that could have been saved, or
+//! an error.
+
+use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE};
+use crate::variables::{Access, VARIABLES};
+
+/// Grows with each change of what the bytes mean.
+pub const LAYOUT: u16 = 1;
+
+impl Instance {
+    /// The instance as bytes, in the memory of `buffer`.
+    ///
+    /// # Errors
+    /// Error where the memory does not suffice.
+    pub fn save(&self, mut buffer: Vec<u8>) -> Result<Vec<u8>, Fault> {
+        buffer.clear();
+        postcard::to_extend(self, buffer)
+            .map_err(|error| Fault::error(format!("the state cannot be saved: {error}")))
+    }
+
+    /// The instance that was saved as these bytes.
+    ///
+    /// # Errors
+    /// Error where the bytes are none of [`Instance::save`], or an instance of
+    /// another kind of FMU.
+    pub fn saved(&self, bytes: &[u8]) -> Result<Instance, Fault> {
+        let damaged = |why: &str| {
+            Fault::error(format!(
+                "the state is damaged ({why}); save it again with fmi2GetFMUstate"
+            ))
+        };
+        let (saved, rest) = postcard::take_from_bytes::<Instance>(bytes)
+            .map_err(|error| damaged(&error.to_string()))?;
+        if !rest.is_empty() {
+            return Err(damaged("it is too long"));
+        }
+        saved.check_soundness().map_err(|why| damaged(&why))?;
+        if saved.interface != self.interface {
+            return Err(Fault::error(
+                "the state is of an instance for another kind of FMU; co-simulation and model \
+                 exchange have states of their own"
+                    .into(),
+            ));
+        }
+        Ok(saved)
+    }
+
+    /// Goes on from where the instance was saved as these bytes.
+    ///
+    /// # Errors
+    /// As [`Instance::saved`]; then nothing changes.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Fault> {
+        *self = self.saved(bytes)?;
+        Ok(())
+    }
+
+    /// Checks that an instance read from bytes could have come about by calls.
+    fn check_soundness(&self) -> Result<(), String> {
+        for variable in &VARIABLES {
+            if let Access::Setting { get, .. } = variable.access {
+                variable.check(get(&self.scene))?;
+            }
+        }
+        if !self.scene.drive.is_finite() {
+            return Err("an input is not a finite number".into());
+        }
+        if !self.experiment.is_sound() {
+            return Err("times or tolerance are out of range".into());
+        }
+        let before = matches!(self.phase, Phase::Instantiated | Phase::Initialization);
+        let matches_phase = match (&self.course, self.interface) {
+            (Course::Ahead, _) => before,
+            (Course::Run(_), Interface::CoSimulation) => matches!(
+                self.phase,
+                Phase::StepComplete | Phase::StepFailed | Phase::Terminated
+            ),
+            (Course::Exchange(_), Interface::ModelExchange) => matches!(
+                self.phase,
+                Phase::EventMode | Phase::ContinuousTime | Phase::Terminated
+            ),
+            _ => false,
+        };
+        if !matches_phase {
+            return Err("phase and motion do not belong together".into());
+        }
+        let sound = match &self.course {
+            Course::Ahead => true,
+            Course::Run(run) => run.is_sound(&self.scene),
+            Course::Exchange(exchange) => exchange.is_sound(),
+        };
+        if !sound {
+            return Err("its numbers are not those of a motion".into());
+        }
+        Ok(())
+    }
+}
+
+impl Experiment {
+    fn is_sound(&self) -> bool {
+        let [smallest, largest] = TOLERANCE_RANGE;
+        let stop = self.stop_time.unwrap_or(self.start_time);
+        self.start_time.is_finite()
+            && stop.is_finite()
+            && stop >= self.start_time
+            && (smallest..=largest).contains(&self.tolerance)
+    }
+}

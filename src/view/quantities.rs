@@ -1,0 +1,179 @@
+//! What follows from the state and the load by formulas, each written once for
+//! plain numbers, for numbers that change in a direction, and for series in time.
+
+use crate::actuator::Coefficients;
+use crate::actuator::motion::{self, Load};
+use crate::scene::Scene;
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::jet::{Dual, Jet};
+use crate::solver::limits::Limit;
+use crate::solver::number::Number;
+
+/// Highest order of the derivatives with respect to time.
+pub const HIGHEST_ORDER: usize = 5;
+
+/// A quantity as a power series in the time from now on, right up to
+/// [`HIGHEST_ORDER`] even for the second derivative of the stretch.
+pub type Series = Jet<{ HIGHEST_ORDER + 3 }>;
+
+/// The quantities that follow from the stretch, its derivatives and the voltage.
+pub trait Quantities<N: Number> {
+    /// Stretch λ.
+    fn stretch(&self) -> N;
+
+    /// Stretch rate dλ/dt; 0 where the actuator is held at a limit.
+    fn stretch_rate(&self) -> N;
+
+    /// d²λ/dt² by Eq. 16; 0 where the actuator is held at a limit.
+    fn stretch_acceleration(&self) -> N;
+
+    /// Voltage φ with the built-in alternating voltage added.
+    fn total_voltage(&self) -> N;
+
+    /// Thickness stretch λ3 = 1/λ².
+    fn thickness_stretch(&self) -> N {
+        let stretch = self.stretch();
+        stretch.same(1.0) / (stretch * stretch)
+    }
+
+    /// dλ3/dt = −2 λ⁻³ dλ/dt.
+    fn thickness_stretch_rate(&self) -> N {
+        let stretch = self.stretch();
+        stretch.same(-2.0) * self.stretch_rate() / (stretch * stretch * stretch)
+    }
+
+    /// The true electric field φλ², nondimensional like the voltage.
+    fn electric_field(&self) -> N {
+        let stretch = self.stretch();
+        self.total_voltage() * stretch * stretch
+    }
+}
+
+/// The actuator at one moment, as numbers that carry their derivatives along.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<N> {
+    stretch: N,
+    rate: N,
+    acceleration: N,
+    voltage: N,
+}
+
+impl<N: Number> Quantities<N> for Moment<N> {
+    fn stretch(&self) -> N {
+        self.stretch
+    }
+
+    fn stretch_rate(&self) -> N {
+        self.rate
+    }
+
+    fn stretch_acceleration(&self) -> N {
+        self.acceleration
+    }
+
+    fn total_voltage(&self) -> N {
+        self.voltage
+    }
+}
+
+/// A direction in which the scene and the state may change: each number is the
+/// rate of change of the one in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct Direction {
+    /// Changes of what the host sets.
+    pub scene: Scene,
+    /// Change of the present state.
+    pub state: State,
+}
+
+impl Moment<Dual> {
+    /// The moment at which a scene is in this state, `held` at a limit or not,
+    /// as it changes in a direction.
+    pub(super) fn along(
+        scene: &Scene,
+        time: Double,
+        state: State,
+        held: Option<Limit>,
+        direction: &Direction,
+    ) -> Moment<Dual> {
+        let (voltage, prestress) = scene.drive.along(&direction.scene.drive, time);
+        if let Some(limit) = held {
+            let change = direction.scene.limits;
+            let change = match limit {
+                Limit::Lower => change.lower,
+                Limit::Upper => change.upper,
+            };
+            return Moment::held(Dual::new(state.position, change), voltage);
+        }
+        let stretch = Dual::new(state.position, direction.state.position);
+        let rate = Dual::new(state.rate, direction.state.rate);
+        let parameters = scene.parameters.along(&direction.scene.parameters);
+        let load = Load {
+            voltage_squared: voltage * voltage,
+            prestress,
+        };
+        Moment {
+            stretch,
+            rate,
+            acceleration: motion::acceleration(
+                &Coefficients::fold(&parameters),
+                load,
+                stretch,
+                rate,
+            ),
+            voltage,
+        }
+    }
+}
+
+impl Moment<Series> {
+    /// The motion of a scene from this state on, `held` at a limit or not, as
+    /// power series in the time.
+    pub(super) fn from_now_on(
+        scene: &Scene,
+        time: Double,
+        state: State,
+        held: Option<Limit>,
+    ) -> Moment<Series> {
+        let drive = scene.drive.at(time);
+        let offset = Series::variable();
+        let voltage = drive.voltage(offset);
+        let mut stretch = Series::constant(state.position);
+        if held.is_some() {
+            return Moment::held(stretch, voltage);
+        }
+        let load = Load {
+            voltage_squared: voltage * voltage,
+            prestress: drive.prestress(offset),
+        };
+        let coefficients = Coefficients::fold(&scene.parameters).same(offset);
+        let mut rate = Series::constant(state.rate);
+        stretch.term[1] = state.rate;
+        // The equation of motion gives one more term of the stretch at a time.
+        let mut acceleration = Series::constant(0.0);
+        for k in 0..=HIGHEST_ORDER {
+            acceleration = motion::acceleration(&coefficients, load, stretch, rate);
+            rate.term[k + 1] = acceleration.term[k] / (k + 1) as f64;
+            stretch.term[k + 2] = rate.term[k + 1] / (k + 2) as f64;
+        }
+        Moment {
+            stretch,
+            rate,
+            acceleration,
+            voltage,
+        }
+    }
+}
+
+impl<N: Number> Moment<N> {
+    fn held(stretch: N, voltage: N) -> Moment<N> {
+        let nothing = stretch.same(0.0);
+        Moment {
+            stretch,
+            rate: nothing,
+            acceleration: nothing,
+            voltage,
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Model exchange: a host that integrates by itself.
+
+use super::*;
+
+const EXCHANGE: fmi2Type = fmi2Type_fmi2ModelExchange;
+
+/// An event info with nothing in it.
+pub fn no_info() -> fmi2EventInfo {
+    fmi2EventInfo {
+        newDiscreteStatesNeeded: 7,
+        terminateSimulation: 7,
+        nominalsOfContinuousStatesChanged: 7,
+        valuesOfContinuousStatesChanged: 7,
+        nextEventTimeDefined: 7,
+        nextEventTime: f64::NAN,
+    }
+}
+
+impl Host {
+    fn fill(
+        &self,
+        function: unsafe extern "C" fn(fmi2Component, *mut f64, usize) -> fmi2Status,
+    ) -> [f64; 2] {
+        let mut values = [f64::NAN; 2];
+        let status = unsafe { function(self.component, values.as_mut_ptr(), 2) };
+        assert_eq!(status, OK, "{}", self.last_line());
+        values
+    }
+
+    fn put(&self, time: f64, states: [f64; 2]) {
+        unsafe {
+            assert_eq!(fmi2SetTime(self.component, time), OK);
+            assert_eq!(
+                fmi2SetContinuousStates(self.component, states.as_ptr(), 2),
+                OK
+            );
+        }
+    }
+
+    fn slope(&self, time: f64, states: [f64; 2]) -> [f64; 2] {
+        self.put(time, states);
+        self.fill(fmi2GetDerivatives)
+    }
+
+    /// Handles an event at the present state.
+    fn event(&self) -> fmi2EventInfo {
+        let (c, mut info) = (self.component, no_info());
+        unsafe {
+            assert_eq!(fmi2EnterEventMode(c), OK);
+            assert_eq!(fmi2NewDiscreteStates(c, &mut info), OK);
+            assert_eq!(fmi2EnterContinuousTimeMode(c), OK);
+        }
+        info
+    }
+}
+
+/// The classical Runge-Kutta method through model exchange, against
+/// co-simulation: of fourth order towards it, with the built-in voltage.
+#[test]
+fn a_host_that_integrates_gets_the_motion_of_the_co_simulation() {
+    let settings = [
+        ("phi", 0.3),
+        ("S", 0.2),
+        ("c", 5.0),
+        ("E_s", 0.1),
+        ("phi_ac", 0.2),
+        ("omega_ac", 0.9),
+    ];
+    let slave = Host::in_phase("stepping");
+    for (name, value) in settings {
+        assert_eq!(slave.set(name, value), OK);
+    }
+    assert_eq!(slave.step(0.0, 10.0), OK);
+    let error = |count: u32| {
+        let host = Host::in_phase_of(EXCHANGE, "event");
+        for (name, value) in settings {
+            assert_eq!(host.set(name, value), OK);
+        }
+        assert_eq!(unsafe { fmi2EnterContinuousTimeMode(host.component) }, OK);
+        let mut x = host.fill(fmi2GetContinuousStates);
+        assert_eq!(x, [1.0, 0.0]);
+        let h = 10.0 / f64::from(count);
+        for step in 0..count {
+            let t = h * f64::from(step);
+            let ahead = |k: [f64; 2], part: f64| [0, 1].map(|i| x[i] + part * h * k[i]);
+            let k1 = host.slope(t, x);
+            let k2 = host.slope(t + 0.5 * h, ahead(k1, 0.5));
+            let k3 = host.slope(t + 0.5 * h, ahead(k2, 0.5));
+            let k4 = host.slope(t + h, ahead(k3, 1.0));
+            x = [0, 1].map(|i| x[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
+        }
+        host.put(10.0, x);
+        assert_eq!(host.get("lambda"), x[0]);
+        (x[0] - slave.get("lambda")).abs()
+    };
+    let (coarse, fine) = (error(200), error(400));
+    assert!(
+        fine < 1e-7 && (coarse / fine).log2() > 3.7,
+        "{coarse} and {fine}"
+    );
+}
+
+#[test]
+fn a_collapse_is_an_event_after_which_the_actuator_is_held() {
+    for (beyond, limit) in [
+        (10.0 + 1e-9, 10.0),
+        (10.0 - 1e-9, 10.0),
+        (0.05 - 1e-12, 0.05),
+    ] {
+        let host = Host::in_phase_of(EXCHANGE, "continuous");
+        assert_eq!(host.fill(fmi2GetEventIndicators), [1.0 - 0.05, 10.0 - 1.0]);
+        let rate = if limit > 1.0 { 2.0 } else { -2.0 };
+        host.put(3.5, [beyond, rate]);
+        let info = host.event();
+        assert_eq!(info.valuesOfContinuousStatesChanged, 1);
+        assert_eq!(
+            (info.terminateSimulation, info.newDiscreteStatesNeeded),
+            (0, 0)
+        );
+        assert_eq!(
+            (
+                info.nextEventTimeDefined,
+                info.nominalsOfContinuousStatesChanged
+            ),
+            (0, 0)
+        );
+        assert_eq!(host.fill(fmi2GetContinuousStates), [limit, 0.0]);
+        assert_eq!(host.fill(fmi2GetDerivatives), [0.0, 0.0]);
+        assert_eq!(host.fill(fmi2GetEventIndicators), [9.95, 9.95]);
+        assert_eq!(host.get("pull_in_time"), 3.5);
+        assert!(
+            host.last_line().contains("on_pull_in = hold"),
+            "{}",
+            host.last_line()
+        );
+        let again = host.event();
+        assert_eq!(again.valuesOfContinuousStatesChanged, 0);
+    }
+}
+
+/// A host that finds no crossings is told after its step.
+#[test]
+fn a_step_beyond_a_limit_asks_for_an_event() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    let completed = || unsafe {
+        let (mut event, mut terminate) = (7, 7);
+        assert_eq!(
+            fmi2CompletedIntegratorStep(host.component, 1, &mut event, &mut terminate),
+            OK
+        );
+        assert_eq!(terminate, 0);
+        event
+    };
+    host.put(1.0, [9.9, 1.0]);
+    assert_eq!(completed(), 0);
+    assert_eq!(host.event().valuesOfContinuousStatesChanged, 0);
+    host.put(1.1, [10.1, 1.0]);
+    assert_eq!(completed(), 1);
+    assert_eq!(host.event().valuesOfContinuousStatesChanged, 1);
+    assert_eq!(completed(), 0);
+}
+
+#[test]
+fn a_collapse_that_terminates_asks_the_host_to() {
+    let host = Host::in_phase_of(EXCHANGE, "initialization");
+    unsafe {
+        assert_eq!(
+            fmi2SetInteger(host.component, &reference("on_pull_in"), 1, &2),
+            OK
+        );
+        assert_eq!(fmi2ExitInitializationMode(host.component), OK);
+        assert_eq!(fmi2EnterContinuousTimeMode(host.component), OK);
+    }
+    host.put(2.0, [10.0, 1.0]);
+    for _ in 0..2 {
+        let info = host.event();
+        assert_eq!(
+            (
+                info.terminateSimulation,
+                info.valuesOfContinuousStatesChanged
+            ),
+            (1, 0)
+        );
+    }
+    assert_eq!(host.fill(fmi2GetContinuousStates), [10.0, 1.0]);
+    assert_eq!(host.get("pull_in_time"), 2.0);
+}
+
+#[test]
+fn bad_arguments_are_refused_and_change_nothing() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    let c = host.component;
+    unsafe {
+        for time in [f64::NAN, f64::INFINITY] {
+            assert_eq!(fmi2SetTime(c, time), ERROR);
+        }
+        for states in [[f64::NAN, 0.0], [1.0, f64::NEG_INFINITY]] {
+            assert_eq!(fmi2SetContinuousStates(c, states.as_ptr(), 2), ERROR);
+        }
+        assert_eq!(fmi2SetContinuousStates(c, [1.5].as_ptr(), 1), ERROR);
+        assert_eq!(fmi2SetContinuousStates(c, null(), 2), ERROR);
+        assert_eq!(fmi2CompletedIntegratorStep(c, 1, null_mut(), &mut 0), ERROR);
+        assert_eq!(fmi2CompletedIntegratorStep(c, 1, &mut 0, null_mut()), ERROR);
+        let fill: [unsafe extern "C" fn(fmi2Component, *mut f64, usize) -> fmi2Status; 4] = [
+            fmi2GetDerivatives,
+            fmi2GetEventIndicators,
+            fmi2GetContinuousStates,
+            fmi2GetNominalsOfContinuousStates,
+        ];
+        for function in fill {
+            assert_eq!(function(c, null_mut(), 2), ERROR);
+            assert_eq!(function(c, [0.0; 3].as_mut_ptr(), 3), ERROR);
+            assert_eq!(function(c, [0.0; 3].as_mut_ptr(), 0), ERROR);
+        }
+        assert_eq!(host.fill(fmi2GetContinuousStates), [1.0, 0.0]);
+        assert_eq!(host.fill(fmi2GetNominalsOfContinuousStates), [1.0, 0.1]);
+        // A trial of the host's integrator that is no motion: it may try again.
+        for states in [[0.0, 0.0], [-0.5, 1.0], [1e200, 1e200]] {
+            assert_eq!(fmi2SetContinuousStates(c, states.as_ptr(), 2), OK);
+            assert_eq!(fmi2GetDerivatives(c, [0.0; 2].as_mut_ptr(), 2), DISCARD);
+        }
+        assert_eq!(fmi2EnterEventMode(c), OK);
+        assert_eq!(fmi2NewDiscreteStates(c, null_mut()), ERROR);
+    }
+}

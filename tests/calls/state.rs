@@ -1,0 +1,329 @@
+//! Saving, restoring and serializing an instance.
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Where the saved instance begins in the bytes: after "DEA state", layout,
+/// GUID, length and checksum.
+const CONTENTS: usize = 9 + 2 + 38 + 4 + 4;
+
+impl Host {
+    fn serialized(&self) -> Vec<u8> {
+        unsafe {
+            let (mut state, mut size) = (null_mut(), 0);
+            assert_eq!(fmi2GetFMUstate(self.component, &mut state), OK);
+            let c = self.component;
+            assert_eq!(fmi2SerializedFMUstateSize(c, state, &mut size), OK);
+            let mut bytes = vec![0u8; size];
+            let status = fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr().cast(), size);
+            assert_eq!(status, OK);
+            assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+            assert!(state.is_null());
+            bytes
+        }
+    }
+
+    /// Goes on from these bytes; the first status that is not OK.
+    fn restore(&self, bytes: &[u8]) -> fmi2Status {
+        let (c, mut state) = (self.component, null_mut());
+        unsafe {
+            let read = fmi2DeSerializeFMUstate(c, bytes.as_ptr().cast(), bytes.len(), &mut state);
+            if read != OK {
+                assert!(state.is_null());
+                return read;
+            }
+            let set = fmi2SetFMUstate(c, state);
+            assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+            set
+        }
+    }
+
+    fn motion(&self) -> [u64; 5] {
+        [
+            "lambda",
+            "lambda_dot",
+            "phi_total",
+            "lambda_highest",
+            "pull_in_time",
+        ]
+        .map(|name| self.get(name).to_bits())
+    }
+}
+
+/// What a host may do between two communication points.
+#[derive(Clone, Debug)]
+enum Deed {
+    Set(&'static str, f64),
+    Slope(f64, f64),
+    Step(f64),
+}
+
+impl Deed {
+    fn run(&self, host: &Host, time: &mut f64) -> fmi2Status {
+        match *self {
+            Deed::Set(name, value) => host.set(name, value),
+            Deed::Slope(first, second) => unsafe {
+                let (orders, values) = ([1, 2], [first, second]);
+                fmi2SetRealInputDerivatives(
+                    host.component,
+                    [0, 0].as_ptr(),
+                    2,
+                    orders.as_ptr(),
+                    values.as_ptr(),
+                )
+            },
+            Deed::Step(step) => {
+                let status = host.step(*time, step);
+                *time += step;
+                status
+            }
+        }
+    }
+}
+
+fn deeds() -> impl Strategy<Value = Vec<Deed>> {
+    let names = [
+        "phi", "S", "c", "gamma_s", "tau_s", "E_s", "phi_ac", "omega_ac",
+    ];
+    let deed = prop_oneof![
+        1 => (prop::sample::select(names.to_vec()), 0.01..0.7)
+            .prop_map(|(name, value)| Deed::Set(name, value)),
+        1 => (-0.05..0.05, -0.01..0.01).prop_map(|(first, second)| Deed::Slope(first, second)),
+        6 => prop_oneof![0.001..0.1, 0.1..3.0, 3.0..60.0].prop_map(Deed::Step),
+    ];
+    prop::collection::vec(deed, 1..25)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Restored in an instance that was never set up, or in the same one after
+    /// it has gone elsewhere, the motion goes on as if nothing had happened.
+    #[test]
+    fn a_restored_motion_goes_on_bit_for_bit(
+        before in deeds(),
+        after in deeds(),
+        extremes in any::<bool>(),
+    ) {
+        let host = Host::in_phase("initialization");
+        let record = i32::from(extremes);
+        unsafe {
+            assert_eq!(fmi2SetBoolean(host.component, &reference("record_extremes"), 1, &record), OK);
+            assert_eq!(fmi2ExitInitializationMode(host.component), OK);
+        }
+        let mut time = 0.0;
+        for deed in &before {
+            deed.run(&host, &mut time);
+        }
+        let bytes = host.serialized();
+        let fresh = Host::new();
+        prop_assert_eq!(fresh.restore(&bytes), OK);
+        prop_assert_eq!(fresh.serialized(), bytes.clone());
+        let follow = |host: &Host| {
+            let mut time = time;
+            after.iter().map(|deed| (deed.run(host, &mut time), host.motion())).collect::<Vec<_>>()
+        };
+        let uninterrupted = follow(&host);
+        prop_assert_eq!(follow(&fresh), uninterrupted.clone());
+        prop_assert_eq!(host.restore(&bytes), OK);
+        prop_assert_eq!(follow(&host), uninterrupted);
+    }
+
+    /// Bytes with a right checksum and wrong contents are refused, or give an
+    /// instance that goes on without harm.
+    #[test]
+    fn hostile_contents_do_no_harm(
+        before in deeds(),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        number in prop::option::of((any::<prop::sample::Index>(), prop::num::f64::ANY)),
+    ) {
+        let host = Host::in_phase("stepping");
+        let mut time = 0.0;
+        for deed in &before {
+            deed.run(&host, &mut time);
+        }
+        let mut bytes = host.serialized();
+        let contents = &mut bytes[CONTENTS..];
+        for (place, byte) in changes {
+            contents[place.index(contents.len())] = byte;
+        }
+        if let Some((place, number)) = number {
+            let place = place.index(contents.len() - 8);
+            contents[place..place + 8].copy_from_slice(&number.to_le_bytes());
+        }
+        seal(&mut bytes);
+        let other = Host::in_phase("stepping");
+        let untouched = other.serialized();
+        if other.restore(&bytes) == OK {
+            let mut time = 0.0;
+            unsafe {
+                fmi2GetRealStatus(other.component, fmi2StatusKind_fmi2LastSuccessfulTime, &mut time);
+                for reference in 0..VARIABLES.len() as u32 {
+                    fmi2GetReal(other.component, &reference, 1, &mut 0.0);
+                }
+            }
+            for step in [0.01, 1.0] {
+                prop_assert!(other.step(time, step) <= ERROR);
+            }
+        } else {
+            prop_assert_eq!(other.serialized(), untouched);
+        }
+    }
+}
+
+/// Puts the right checksum into a serialized state.
+fn seal(bytes: &mut [u8]) {
+    let checksum = crc32fast::hash(&bytes[CONTENTS..]);
+    bytes[CONTENTS - 4..CONTENTS].copy_from_slice(&checksum.to_le_bytes());
+}
+
+#[test]
+fn damaged_bytes_are_refused_and_change_nothing() {
+    let host = Host::in_phase("stepping");
+    assert_eq!(host.set("phi", 0.6), OK);
+    assert_eq!(host.step(0.0, 30.0), OK);
+    let bytes = host.serialized();
+    let other = Host::in_phase("stepping");
+    let untouched = other.serialized();
+    for place in 0..bytes.len() {
+        let mut damaged = bytes.clone();
+        damaged[place] ^= 1 << (place % 8);
+        assert_eq!(other.restore(&damaged), ERROR, "byte {place}");
+        assert_eq!(other.restore(&bytes[..place]), ERROR, "{place} bytes");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert_eq!(other.restore(&longer), ERROR);
+    let mut trailing = longer.clone();
+    let length = (trailing.len() - CONTENTS) as u32;
+    trailing[CONTENTS - 8..CONTENTS - 4].copy_from_slice(&length.to_le_bytes());
+    seal(&mut trailing);
+    assert_eq!(other.restore(&trailing), ERROR);
+    assert!(
+        other.last_line().contains("too long"),
+        "{}",
+        other.last_line()
+    );
+    let mut version = bytes.clone();
+    version[9] += 1;
+    assert_eq!(other.restore(&version), ERROR);
+    assert!(
+        other.last_line().contains("another version"),
+        "{}",
+        other.last_line()
+    );
+    assert_eq!(other.serialized(), untouched);
+    assert_eq!(other.restore(&bytes), OK);
+    assert_eq!(other.get("lambda"), host.get("lambda"));
+}
+
+#[test]
+fn every_phase_is_saved_and_restored() {
+    for (kind, phases) in KINDS {
+        for phase in phases {
+            let host = Host::in_phase_of(kind, phase);
+            let other = Host::of(kind);
+            let bytes = host.serialized();
+            assert_eq!(other.restore(&bytes), OK, "{phase}: {}", other.last_line());
+            assert_eq!(other.serialized(), bytes);
+            for (name, function, ..) in TABLE {
+                assert_eq!(other.restore(&bytes), OK);
+                assert_eq!(host.restore(&bytes), OK);
+                let (a, b) = (function(host.component), function(other.component));
+                assert_eq!(a, b, "{name} in {phase}");
+            }
+        }
+    }
+    let exchange = Host::in_phase_of(fmi2Type_fmi2ModelExchange, "event");
+    assert_eq!(
+        exchange.restore(&Host::in_phase("stepping").serialized()),
+        ERROR
+    );
+    assert!(exchange.last_line().contains("another kind of FMU"));
+}
+
+#[test]
+fn a_state_is_small_and_its_memory_is_used_again() {
+    let host = Host::in_phase("stepping");
+    let c = host.component;
+    assert_eq!(host.set("phi_ac", 0.3), OK);
+    assert_eq!(host.set("omega_ac", 0.1438), OK);
+    assert_eq!(host.step(0.0, 100.0), OK);
+    assert!(
+        host.serialized().len() < 1024,
+        "{}",
+        host.serialized().len()
+    );
+    unsafe {
+        let mut state = null_mut();
+        assert_eq!(fmi2GetFMUstate(c, &mut state), OK);
+        let first = state;
+        let stretch = host.get("lambda");
+        assert_eq!(host.step(100.0, 1.0), OK);
+        let later = host.get("lambda");
+        assert_eq!(fmi2GetFMUstate(c, &mut state), OK);
+        assert_eq!(state, first, "the state that was there is overwritten");
+        assert_eq!(host.step(101.0, 1.0), OK);
+        assert_eq!(fmi2SetFMUstate(c, state), OK);
+        assert_eq!(host.get("lambda"), later);
+        assert_ne!(later, stretch);
+        assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+        assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+        assert_eq!(fmi2FreeFMUstate(c, null_mut()), OK);
+    }
+}
+
+#[test]
+fn null_states_and_wrong_sizes_are_refused() {
+    let host = Host::in_phase("stepping");
+    let (c, mut state) = (host.component, null_mut());
+    unsafe {
+        assert_eq!(fmi2GetFMUstate(c, null_mut()), ERROR);
+        assert_eq!(fmi2SetFMUstate(c, null_mut()), ERROR);
+        assert_eq!(fmi2SerializedFMUstateSize(c, null_mut(), &mut 0), ERROR);
+        assert_eq!(fmi2SerializeFMUstate(c, null_mut(), null_mut(), 0), ERROR);
+        assert_eq!(fmi2DeSerializeFMUstate(c, null(), 9, &mut state), ERROR);
+        assert_eq!(fmi2DeSerializeFMUstate(c, null(), 0, &mut state), ERROR);
+        assert!(state.is_null());
+        assert_eq!(fmi2GetFMUstate(c, &mut state), OK);
+        assert_eq!(fmi2SerializedFMUstateSize(c, state, null_mut()), ERROR);
+        let mut few = [0u8; 10];
+        let target = few.as_mut_ptr().cast();
+        assert_eq!(fmi2SerializeFMUstate(c, state, target, 10), ERROR);
+        assert_eq!(few, [0; 10]);
+        let good = host.serialized();
+        let bytes = good.as_ptr().cast();
+        assert_eq!(
+            fmi2DeSerializeFMUstate(c, bytes, good.len(), null_mut()),
+            ERROR
+        );
+        assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+    }
+}
+
+/// A host that says that it will not go back may be believed or not: both give
+/// the same motion, and a host that has not said so can go back.
+#[test]
+fn steps_are_the_same_whether_the_host_may_go_back_or_not() {
+    let run = |no_set_prior: i32| {
+        let host = Host::in_phase("stepping");
+        let (c, mut state) = (host.component, null_mut());
+        assert_eq!(host.set("phi", 0.6), OK);
+        unsafe {
+            for step in 0..20 {
+                let time = 0.7 * f64::from(step);
+                assert_eq!(fmi2GetFMUstate(c, &mut state), OK);
+                if no_set_prior == 0 {
+                    // A trial step that is taken back.
+                    assert_eq!(fmi2DoStep(c, time, 1.4, 0), OK);
+                    assert_eq!(fmi2SetFMUstate(c, state), OK);
+                }
+                assert_eq!(fmi2DoStep(c, time, 0.7, no_set_prior), OK);
+            }
+            assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+        }
+        host.motion()
+    };
+    assert_eq!(run(0), run(1));
+}
