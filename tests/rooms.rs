@@ -25,11 +25,7 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
         &["slave", "variables"],
         &["quick_xml", "serde"],
     ),
-    (
-        "abi",
-        &["description", "slave"],
-        &["crc32fast", "fmi", "libc"],
-    ),
+    ("abi", &["description", "slave"], &["crc", "fmi", "libc"]),
 ];
 
 /// Longest file that is still read in one go.
@@ -63,7 +59,7 @@ fn each_room_imports_only_what_it_may() {
         "libc",
         "nalgebra",
         "postcard",
-        "crc32fast",
+        "crc",
         "quick_xml",
         "serde",
         "fearless_simd",

@@ -5,10 +5,13 @@
 //! "DEA state", layout (u16), GUID (38 characters), length (u32), CRC-32 (u32), the saved instance
 //! ```
 
+use crc::{CRC_32_ISO_HDLC, Crc};
+
 use crate::description::GUID;
 use crate::slave::{Fault, STATE_LAYOUT};
 
 const MAGIC: &[u8] = b"DEA state";
+static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const LAYOUT: [u8; 2] = STATE_LAYOUT.to_le_bytes();
 
 /// Size of the envelope with these contents.
@@ -18,7 +21,7 @@ pub fn size(contents: &[u8]) -> usize {
 
 fn header(contents: &[u8]) -> Vec<u8> {
     let length = contents.len() as u32;
-    let checksum = crc32fast::hash(contents);
+    let checksum = CHECKSUM.checksum(contents);
     [
         MAGIC,
         &LAYOUT,
@@ -68,7 +71,7 @@ pub fn open(sealed: &[u8]) -> Result<&[u8], Fault> {
     if sizes[..4] != (contents.len() as u32).to_le_bytes() {
         return Err(fault("their length is not the one that they say"));
     }
-    if sizes[4..] != crc32fast::hash(contents).to_le_bytes() {
+    if sizes[4..] != CHECKSUM.checksum(contents).to_le_bytes() {
         return Err(fault("their checksum is wrong"));
     }
     Ok(contents)

@@ -88,6 +88,7 @@ impl Hash {
             .text(variable.description)
             .byte(variable.causality as u8)
             .byte(variable.variability as u8)
+            .byte(variable.unit as u8)
             .number(variable.start);
         let hash = match variable.kind {
             Kind::Real { min, max, nominal } => hash

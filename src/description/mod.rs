@@ -5,13 +5,17 @@ mod schema;
 
 pub use guid::GUID;
 
-use schema::*;
+use schema::{
+    BaseUnit, Boolean, Category, CoSimulation, DefaultExperiment, DisplayUnit, Enumeration,
+    FmiModelDescription, Item, Items, LogCategories, ModelExchange, ModelStructure, ModelVariables,
+    Number, Real, ScalarVariable, SimpleType, TypeDefinitions, UnitDefinitions, Unknown, Unknowns,
+};
 use serde::Serialize;
 
 use crate::slave::{DEFAULT_TOLERANCE, INDICATOR_COUNT};
 use crate::variables::{
-    Access, Causality, DERIVATIVES, Dependencies, Kind, ON_PULL_IN, STATES, VARIABLES, Variability,
-    Variable, value_reference,
+    Access, Causality, DERIVATIVES, Dependencies, Kind, ON_PULL_IN, STATES, Unit, VARIABLES,
+    Variability, Variable, value_reference,
 };
 
 /// The model identifier: name of the FMU and of the binary in it.
@@ -29,7 +33,9 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
 const OUTPUT_DERIVATIVE_ORDER: u32 = 1;
 
 const TYPE_NAME: &str = "OnPullIn";
-const UNIT: &str = "1";
+const NUMBER: &str = "1";
+const RADIAN: &str = "rad";
+const DEGREE: &str = "deg";
 const STOP_TIME: f64 = 100.0;
 const STEP_SIZE: f64 = 0.1;
 
@@ -79,10 +85,21 @@ fn description() -> FmiModelDescription {
             provides_directional_derivative: true,
         },
         unit_definitions: UnitDefinitions {
-            unit: vec![Unit {
-                name: UNIT,
-                base_unit: BaseUnit {},
-            }],
+            unit: vec![
+                schema::Unit {
+                    name: NUMBER,
+                    base_unit: BaseUnit { rad: None },
+                    display_unit: None,
+                },
+                schema::Unit {
+                    name: RADIAN,
+                    base_unit: BaseUnit { rad: Some(1) },
+                    display_unit: Some(DisplayUnit {
+                        name: DEGREE,
+                        factor: Number(1.0_f64.to_degrees()),
+                    }),
+                },
+            ],
         },
         type_definitions: TypeDefinitions {
             simple_type: vec![SimpleType {
@@ -124,7 +141,11 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
     match variable.kind {
         Kind::Real { min, max, nominal } => {
             real = Some(Real {
-                unit: UNIT,
+                unit: match variable.unit {
+                    Unit::One => NUMBER,
+                    Unit::Angle | Unit::AngularFrequency => RADIAN,
+                },
+                display_unit: (variable.unit == Unit::Angle).then_some(DEGREE),
                 min: Number(min),
                 max: Number(max),
                 nominal: Number(nominal),

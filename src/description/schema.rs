@@ -104,10 +104,23 @@ pub struct Unit {
     pub name: &'static str,
     #[serde(rename = "BaseUnit")]
     pub base_unit: BaseUnit,
+    #[serde(rename = "DisplayUnit", skip_serializing_if = "Option::is_none")]
+    pub display_unit: Option<DisplayUnit>,
 }
 
 #[derive(Serialize)]
-pub struct BaseUnit {}
+pub struct BaseUnit {
+    #[serde(rename = "@rad", skip_serializing_if = "Option::is_none")]
+    pub rad: Option<i32>,
+}
+
+#[derive(Serialize)]
+pub struct DisplayUnit {
+    #[serde(rename = "@name")]
+    pub name: &'static str,
+    #[serde(rename = "@factor")]
+    pub factor: Number,
+}
 
 #[derive(Serialize)]
 pub struct TypeDefinitions {
@@ -197,6 +210,8 @@ pub struct ScalarVariable {
 pub struct Real {
     #[serde(rename = "@unit")]
     pub unit: &'static str,
+    #[serde(rename = "@displayUnit", skip_serializing_if = "Option::is_none")]
+    pub display_unit: Option<&'static str>,
     #[serde(rename = "@min")]
     pub min: Number,
     #[serde(rename = "@max")]

@@ -76,7 +76,8 @@ impl Instance {
             }
             check_order(variable.name, order, HIGHEST_ORDER)?;
         }
-        let motion = self.view().from_now_on();
+        let highest = orders.iter().max().map_or(0, |&order| order as usize);
+        let motion = self.view().from_now_on(highest);
         for (place, (&reference, &order)) in references.iter().zip(orders).enumerate() {
             let Some(derivatives) = derivatives_of(&VARIABLES[reference as usize]) else {
                 continue;

@@ -138,12 +138,8 @@ impl Instance {
                 "{name} is fixed after initialization; set it before, or call fmi2Reset first"
             )));
         }
-        if variable.variability == Variability::Tunable && self.phase == Phase::ContinuousTime {
-            return Err(Fault::error(format!(
-                "{name} is a tunable parameter; it can be set in event mode, \
-                 not in continuous-time mode"
-            )));
-        }
+        // Tunable parameters in continuous-time mode go beyond the standard: FMPy sets
+        // them there, with the inputs.
         Ok(())
     }
 }

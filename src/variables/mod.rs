@@ -59,6 +59,17 @@ pub enum Kind {
     Enumeration,
 }
 
+/// The unit of a variable. Time and length have none here, so that there are two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Unit {
+    /// 1, a pure number.
+    One,
+    /// Radian, to be shown in degrees.
+    Angle,
+    /// Radians per unit of time.
+    AngularFrequency,
+}
+
 /// How a variable is read and set.
 #[derive(Clone, Copy)]
 pub enum Access {
@@ -118,6 +129,8 @@ pub struct Variable {
     pub variability: Variability,
     /// Its type and limits.
     pub kind: Kind,
+    /// The unit of a real one.
+    pub unit: Unit,
     /// The value before the host sets another; none for results.
     pub start: Option<f64>,
     /// The name of the state of which this is the derivative.

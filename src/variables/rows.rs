@@ -1,6 +1,6 @@
 //! What the rows of the table are made with.
 
-use super::{Access, Causality, Dependencies, Derivatives, Kind, Variability, Variable};
+use super::{Access, Causality, Dependencies, Derivatives, Kind, Unit, Variability, Variable};
 use crate::actuator::drive::Polynomial;
 use crate::scene::Scene;
 use crate::view::View;
@@ -48,6 +48,7 @@ pub(super) const fn input(
         causality: Causality::Input,
         variability: Variability::Continuous,
         kind,
+        unit: Unit::One,
         start: Some(0.0),
         derivative_of: None,
         access: Access::Input { get, of },
@@ -69,6 +70,7 @@ pub(super) const fn parameter(
         causality: Causality::Parameter,
         variability,
         kind,
+        unit: Unit::One,
         start: Some(start),
         derivative_of: None,
         access: Access::Setting { get, set },
@@ -111,6 +113,7 @@ pub(super) const fn result(
         causality,
         variability,
         kind,
+        unit: Unit::One,
         start: None,
         derivative_of: None,
         access: Access::Result {
@@ -122,6 +125,11 @@ pub(super) const fn result(
 }
 
 impl Variable {
+    pub(super) const fn in_unit(mut self, unit: Unit) -> Variable {
+        self.unit = unit;
+        self
+    }
+
     pub(super) const fn derivative_of(mut self, state: &'static str) -> Variable {
         self.derivative_of = Some(state);
         self

@@ -3,7 +3,7 @@
 use super::rows::{
     UNDECLARED, depends, formula, input, parameter, positive, real, result, unlimited, value,
 };
-use super::{Causality, Derivatives, Kind, Variability, Variable, checked};
+use super::{Causality, Derivatives, Kind, Unit, Variability, Variable, checked};
 use crate::scene::OnPullIn;
 use crate::view::Quantities;
 
@@ -97,7 +97,8 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         0.0,
         |scene| scene.drive.harmonic.frequency,
         |scene, value| scene.drive.harmonic.frequency = value,
-    ),
+    )
+    .in_unit(Unit::AngularFrequency),
     parameter(
         "phase_ac",
         "phase of the built-in voltage at t = 0, radians",
@@ -106,7 +107,8 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         0.0,
         |scene| scene.drive.harmonic.phase,
         |scene, value| scene.drive.harmonic.phase = value,
-    ),
+    )
+    .in_unit(Unit::Angle),
     parameter(
         "lambda_min",
         "stretch at which the contracting actuator has collapsed",

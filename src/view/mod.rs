@@ -118,10 +118,11 @@ impl View<'_> {
         Moment::along(self.scene, self.time, self.state(), self.held(), direction)
     }
 
-    /// The motion from now on, as power series in the time.
+    /// The motion from now on, as power series in the time that are right up to
+    /// the derivatives of `order`, at most [`HIGHEST_ORDER`].
     #[must_use]
-    pub fn from_now_on(&self) -> Moment<Series> {
-        Moment::from_now_on(self.scene, self.time, self.state(), self.held())
+    pub fn from_now_on(&self, order: usize) -> Moment<Series> {
+        Moment::from_now_on(self.scene, self.time, self.state(), self.held(), order)
     }
 
     /// The voltage φ that the host drives, without the built-in drive.

@@ -129,12 +129,13 @@ impl Moment<Dual> {
 
 impl Moment<Series> {
     /// The motion of a scene from this state on, `held` at a limit or not, as
-    /// power series in the time.
+    /// power series in the time, right up to the derivatives of `order`.
     pub(super) fn from_now_on(
         scene: &Scene,
         time: Double,
         state: State,
         held: Option<Limit>,
+        order: usize,
     ) -> Moment<Series> {
         let drive = scene.drive.at(time);
         let offset = Series::variable();
@@ -152,7 +153,7 @@ impl Moment<Series> {
         stretch.term[1] = state.rate;
         // The equation of motion gives one more term of the stretch at a time.
         let mut acceleration = Series::constant(0.0);
-        for k in 0..=HIGHEST_ORDER {
+        for k in 0..=order.min(HIGHEST_ORDER) {
             acceleration = motion::acceleration(&coefficients, load, stretch, rate);
             rate.term[k + 1] = acceleration.term[k] / (k + 1) as f64;
             stretch.term[k + 2] = rate.term[k + 1] / (k + 2) as f64;

@@ -174,7 +174,7 @@ proptest! {
 
 /// Puts the right checksum into a serialized state.
 fn seal(bytes: &mut [u8]) {
-    let checksum = crc32fast::hash(&bytes[CONTENTS..]);
+    let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&bytes[CONTENTS..]);
     bytes[CONTENTS - 4..CONTENTS].copy_from_slice(&checksum.to_le_bytes());
 }
 

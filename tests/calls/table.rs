@@ -102,7 +102,8 @@ pub const TABLE: [(&str, Function, &str, &str); 42] = [
         "fmi2SetReal of a tunable parameter",
         |c| unsafe { fmi2SetReal(c, &reference("gamma_s"), 1, &0.1) },
         "instantiated initialization stepping",
-        "instantiated initialization event",
+        // In continuous-time mode too, beyond the standard: FMPy does so.
+        "instantiated initialization event continuous",
     ),
     (
         "fmi2SetReal of a fixed parameter",

@@ -49,3 +49,10 @@ ESCAPE = 1e-11
 
 SAME_MOTION = 1e-11
 """Two runs over at most 100 time units that solve the same problem through different calls."""
+
+CVODE = 1e-6
+"""λ and dλ/dt by CVODE (BDF of order 1 to 5) at its tolerance of 1e-10 over 100 time units, some 30 periods where
+c = 2: its local errors add up to 5e-7 there, 2e-8 in the slow scenes, and fall with its tolerance."""
+
+CVODE_EVENT = 1e-6
+"""The instant of collapse by CVODE at the same tolerance: 4e-7 off, 1e-5 at 1e-8."""

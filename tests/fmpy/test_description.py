@@ -16,8 +16,13 @@ def test_fmpy_can_simulate_it_here(fmu_path):
 
 def test_start_values_are_those_of_the_instance(actuator, description):
     actuator.start({})
-    declared = {v.name: float(v.start) for v in description.modelVariables if v.start is not None}
-    assert len(declared) >= 14, "two inputs and twelve parameters declare start values"
+    booleans = {"false": 0.0, "true": 1.0}
+    declared = {
+        v.name: booleans[v.start] if v.type == "Boolean" else float(v.start)
+        for v in description.modelVariables
+        if v.start is not None
+    }
+    assert len(declared) >= 14, "two inputs and at least twelve parameters declare start values"
     assert {name: float(actuator.get(name)) for name in declared} == declared
 
 
