@@ -7,6 +7,7 @@
 
 mod derivatives;
 mod exchange;
+mod masters;
 mod random;
 mod refusals;
 mod runs;
@@ -66,6 +67,19 @@ struct Host {
 
 impl Host {
     fn with(name: *const c_char, kind: fmi2Type, guid: *const c_char) -> Host {
+        Host::made(name, kind, guid, null())
+    }
+
+    fn located(name: *const c_char, location: *const c_char, guid: *const c_char) -> Host {
+        Host::made(name, fmi2Type_fmi2CoSimulation, guid, location)
+    }
+
+    fn made(
+        name: *const c_char,
+        kind: fmi2Type,
+        guid: *const c_char,
+        location: *const c_char,
+    ) -> Host {
         let log = Box::new(Log::default());
         let named = logger
             as unsafe extern "C" fn(
@@ -85,7 +99,7 @@ impl Host {
             stepFinished: None,
             componentEnvironment: (&raw const *log).cast_mut().cast(),
         };
-        let component = unsafe { fmi2Instantiate(name, kind, guid, null(), &callbacks, 0, 1) };
+        let component = unsafe { fmi2Instantiate(name, kind, guid, location, &callbacks, 0, 1) };
         Host { component, log }
     }
 
