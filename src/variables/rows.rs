@@ -11,7 +11,7 @@ macro_rules! formula {
     ($quantity:ident) => {
         (
             |view| view.$quantity(),
-            Some(Derivatives {
+            Some($crate::variables::Derivatives {
                 along: |moment| moment.$quantity(),
                 from_now_on: |moment| moment.$quantity(),
             }),

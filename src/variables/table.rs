@@ -3,7 +3,7 @@
 use super::rows::{
     UNDECLARED, depends, formula, input, parameter, positive, real, result, unlimited, value,
 };
-use super::{Causality, Derivatives, Kind, Unit, Variability, Variable, checked};
+use super::{Causality, Kind, Unit, Variability, Variable, checked};
 use crate::scene::OnPullIn;
 use crate::view::Quantities;
 

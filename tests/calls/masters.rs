@@ -17,36 +17,36 @@ fn initialize(host: &Host) {
 /// one that has no experiment to set up leaves the call out.
 #[test]
 fn values_may_be_set_whenever_before_the_first_step() {
-    let values = |host: &Host| {
+    fn values(host: &Host) {
         assert_eq!(host.set("phi", 0.6), OK);
         assert_eq!(host.set("E_s", 0.2), OK);
         assert_eq!(host.set("lambda_start", 1.1), OK);
-    };
-    let orders: [fn(&Host, &dyn Fn(&Host)); 4] = [
-        |host, values| {
+    }
+    let orders: [fn(&Host); 4] = [
+        |host| {
             values(host);
             assert_eq!(EXPERIMENT_WITHOUT_STOP(host.component), OK);
             initialize(host);
         },
-        |host, values| {
+        |host| {
             assert_eq!(EXPERIMENT_WITHOUT_STOP(host.component), OK);
             values(host);
             initialize(host);
         },
-        |host, values| unsafe {
+        |host| unsafe {
             assert_eq!(EXPERIMENT_WITHOUT_STOP(host.component), OK);
             assert_eq!(fmi2EnterInitializationMode(host.component), OK);
             values(host);
             assert_eq!(fmi2ExitInitializationMode(host.component), OK);
         },
-        |host, values| {
+        |host| {
             values(host);
             initialize(host);
         },
     ];
     let results = orders.map(|order| {
         let host = Host::new();
-        order(&host, &values);
+        order(&host);
         assert_eq!(host.get("lambda"), 1.1);
         assert_eq!(host.step(0.0, 7.7), OK);
         host.get("lambda").to_bits()
@@ -144,4 +144,29 @@ fn names_and_locations_may_be_strange() {
         let nowhere = Host::located(name.as_ptr(), null(), guid.as_ptr());
         assert!(!nowhere.component.is_null());
     }
+}
+
+/// Instances share nothing: each may live in a thread of its own, or move to
+/// another one.
+#[test]
+fn instances_in_several_threads_do_not_disturb_each_other() {
+    fn may_move<T: Send>() {}
+    may_move::<dielectric_elastomer_actuator::slave::Instance>();
+    let run = || {
+        let host = Host::in_phase("stepping");
+        assert_eq!(host.set("phi", 0.6), OK);
+        for step in 0..200 {
+            assert_eq!(host.step(0.3 * f64::from(step), 0.3), OK);
+        }
+        host.get("lambda").to_bits()
+    };
+    let alone = run();
+    let together: Vec<u64> = std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..8).map(|_| scope.spawn(run)).collect();
+        threads
+            .into_iter()
+            .map(|thread| thread.join().expect("no panic"))
+            .collect()
+    });
+    assert_eq!(together, [alone; 8]);
 }

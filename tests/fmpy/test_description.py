@@ -31,3 +31,30 @@ def test_every_variable_can_be_read(actuator, description):
     actuator.advance(1.0)
     for variable in description.modelVariables:
         assert not math.isnan(actuator.get(variable.name)), variable.name
+
+
+def test_capabilities_are_declared(description):
+    for interface in (description.coSimulation, description.modelExchange):
+        assert interface.modelIdentifier == description.modelName
+        assert interface.canGetAndSetFMUstate and interface.canSerializeFMUstate
+        assert interface.providesDirectionalDerivative
+        assert not interface.canBeInstantiatedOnlyOncePerProcess
+    slave = description.coSimulation
+    assert slave.canHandleVariableCommunicationStepSize and slave.canInterpolateInputs
+    assert slave.maxOutputDerivativeOrder == 1
+    assert not slave.canRunAsynchronuously
+
+
+def test_model_structure_lists_states_and_dependencies(description):
+    assert (description.numberOfContinuousStates, description.numberOfEventIndicators) == (2, 2)
+    derivatives = {d.variable.name: d.variable.derivative.name for d in description.derivatives}
+    assert derivatives == {"lambda_dot": "lambda", "lambda_ddot": "lambda_dot"}
+
+    def dependencies(unknowns):
+        return {u.variable.name: {known.name for known in u.dependencies} for u in unknowns}
+
+    assert dependencies(description.outputs) == {"lambda": {"lambda"}, "lambda3": {"lambda"}, "pulled_in": set()}
+    assert dependencies(description.derivatives)["lambda_ddot"] == {"phi", "S", "lambda", "lambda_dot"}
+    initial = dependencies(description.initialUnknowns)
+    assert set(initial) == {"lambda", "lambda3", "pulled_in", "lambda_dot", "lambda_ddot"}
+    assert initial["lambda3"] == {"lambda_start"}
