@@ -14,6 +14,7 @@ pub mod collocation;
 pub mod double;
 pub mod extremes;
 pub mod jet;
+pub mod lanes;
 pub mod limits;
 pub mod number;
 pub mod orbit;
@@ -21,6 +22,7 @@ mod outcome;
 mod pieces;
 pub mod segment;
 pub mod step_control;
+mod stride;
 mod tables;
 pub mod trajectory;
 

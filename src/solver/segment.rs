@@ -1,11 +1,14 @@
 //! The motion over one substep as a polynomial.
 
 use nalgebra::{SMatrixView, SVector};
-
 use serde::{Deserialize, Serialize};
 
 use super::State;
-use super::tables::{Columns, GAUSS_16, PAIRS};
+use super::collocation::Series;
+use super::tables::{Columns, GAUSS_16};
+
+/// Node pairs of the method whose segments are kept.
+pub const PAIRS: usize = 8;
 
 /// Number of coefficients: the twice integrated polynomial of degree 15.
 const TERMS: usize = 2 * PAIRS + 2;
@@ -46,23 +49,24 @@ impl Segment {
         }
     }
 
-    /// Makes this the motion from `start` to `end` over a substep of twice the
-    /// length `half`, with f given by half² times its Legendre coefficients.
-    pub fn assign(
-        &mut self,
-        half: f64,
-        start: State,
-        end: State,
-        even: [f64; PAIRS],
-        odd: [f64; PAIRS],
-    ) {
+    /// Makes this the motion from `start` to `end` with f given by its series.
+    pub fn assign(&mut self, start: State, end: State, f: &Series<PAIRS>) {
         // Not the powers: they are 144 bytes that may never be asked for.
-        self.half = half;
+        self.half = f.half;
         self.start = start;
         self.end = end;
-        self.even = even;
-        self.odd = odd;
+        self.even = f.even;
+        self.odd = f.odd;
         self.expanded = false;
+    }
+
+    /// f over the substep.
+    pub fn series(&self) -> Series<PAIRS> {
+        Series {
+            half: self.half,
+            even: self.even,
+            odd: self.odd,
+        }
     }
 
     /// The length of the substep.
@@ -75,13 +79,6 @@ impl Segment {
     #[must_use]
     pub fn end(&self) -> State {
         self.end
-    }
-
-    /// The size of the last two coefficients of f, in units of the position:
-    /// what is neglected after them is smaller.
-    #[must_use]
-    pub fn tail(&self) -> f64 {
-        self.even[PAIRS - 1].abs() + self.odd[PAIRS - 1].abs()
     }
 
     /// Whether the numbers can be those of a substep.
@@ -201,7 +198,7 @@ impl Segment {
     }
 }
 
-fn product(columns: &Columns, values: &[f64; PAIRS]) -> SVector<f64, PAIRS> {
+fn product(columns: &Columns<PAIRS>, values: &[f64; PAIRS]) -> SVector<f64, PAIRS> {
     SMatrixView::<f64, PAIRS, PAIRS>::from_slice(columns.as_flattened()) * SVector::from(*values)
 }
 
@@ -222,7 +219,8 @@ mod tests {
         let (mut even, mut odd) = ([0.0; PAIRS], [0.0; PAIRS]);
         (even[0], odd[0]) = (4.0 * 6.0, 4.0 * 12.0);
         let mut segment = Segment::nothing(start);
-        segment.assign(2.0, start, end, even, odd);
+        let half = 2.0;
+        segment.assign(start, end, &Series { half, even, odd });
         segment.expand();
         segment
     }

@@ -1,7 +1,7 @@
 //! Constant tables of Gauss–Legendre collocation, made by the compiler.
 //!
 //! Method: on u ∈ [−1, 1] the second derivative f is replaced by the polynomial
-//! of degree 15 through its values at the 16 Gauss–Legendre nodes, written in
+//! of degree 2P−1 through its values at the 2P Gauss–Legendre nodes, written in
 //! Legendre polynomials, f = Σ a_k P_k with a_k = (2k+1)/2 Σ_m w_m P_k(u_m) f_m,
 //! and integrated once and twice from u = −1 in closed form:
 //!
@@ -11,7 +11,7 @@
 //!
 //! The nodes lie symmetrically, so f is split into the sum and the difference of
 //! its values at +u and −u: sums meet even polynomials only, differences odd
-//! ones, and four 8×8 matrices do the work of two of 16×16.
+//! ones, and four P×P matrices do the work of two of 2P×2P.
 //!
 //! Source: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential
 //! Equations I", 2nd ed., section II.7. Accuracy: each entry is computed in
@@ -19,89 +19,93 @@
 
 use super::double::Double;
 
-/// Number of node pairs ±u; the method has twice as many nodes.
-pub const PAIRS: usize = 8;
+/// Nodes of the largest method.
+const MOST_NODES: usize = 16;
 
-const NODES: usize = 2 * PAIRS;
-
-/// Legendre polynomials needed at one point: degrees 0 to `NODES + 1`.
-type Legendre = [Double; NODES + 2];
+/// Legendre polynomials at one point: degrees 0 to the number of nodes + 1.
+type Legendre = [Double; MOST_NODES + 2];
 
 /// A matrix by columns: column j multiplies the value at node pair j.
-pub type Columns = [[f64; PAIRS]; PAIRS];
+pub type Columns<const P: usize> = [[f64; P]; P];
 
-/// The tables of the method of 16 nodes. Rows belong to the node pairs,
+/// The tables of the method of P node pairs ±u, that is 2P nodes. Rows belong to the node pairs,
 /// columns to the sums f(u_j) + f(−u_j) or differences f(u_j) − f(−u_j).
 #[derive(Debug)]
-pub struct Tables {
+pub struct Tables<const P: usize> {
     /// The positive nodes u_i, increasing.
-    pub node: [f64; PAIRS],
+    pub node: [f64; P],
     /// Row of a_0, the mean of f: from sums.
-    pub mean: [f64; PAIRS],
+    pub mean: [f64; P],
     /// Row of a_1/3: from differences.
-    pub tilt: [f64; PAIRS],
+    pub tilt: [f64; P],
     /// Odd part of the once integrated f, from sums.
-    pub once_from_sums: Columns,
+    pub once_from_sums: Columns<P>,
     /// Even part of the once integrated f without its mean, from differences.
-    pub once_from_differences: Columns,
+    pub once_from_differences: Columns<P>,
     /// Even part of the twice integrated f, from sums.
-    pub twice_from_sums: Columns,
+    pub twice_from_sums: Columns<P>,
     /// Odd part of the twice integrated f without u·mean, from differences.
-    pub twice_from_differences: Columns,
-    /// Legendre coefficients a_0, a_2, …, a_14, from sums.
-    pub series_from_sums: Columns,
-    /// Legendre coefficients a_1, a_3, …, a_15, from differences.
-    pub series_from_differences: Columns,
-    /// Coefficients of u², u⁴, …, u¹⁶ of the twice integrated f: column k
+    pub twice_from_differences: Columns<P>,
+    /// Legendre coefficients a_0, a_2, …, a_2P−2, from sums.
+    pub series_from_sums: Columns<P>,
+    /// Legendre coefficients a_1, a_3, …, a_2P−1, from differences.
+    pub series_from_differences: Columns<P>,
+    /// Coefficients of u², u⁴, …, u²ᴾ of the twice integrated f: column k
     /// multiplies a_2k. Not taken from the sums directly, since the entries
     /// (up to 1e5) would magnify rounding that a decaying series does not have.
-    pub powers_from_even: Columns,
-    /// Coefficients of u³, u⁵, …, u¹⁷: column k multiplies a_2k+1.
-    pub powers_from_odd: Columns,
+    pub powers_from_even: Columns<P>,
+    /// Coefficients of u³, u⁵, …, u²ᴾ⁺¹: column k multiplies a_2k+1.
+    pub powers_from_odd: Columns<P>,
 }
 
-/// The tables of the method of 16 nodes.
-pub static GAUSS_16: Tables = Tables::new();
+/// The tables of the method of 8 nodes.
+pub static GAUSS_8: Tables<4> = Tables::new();
 
-impl Tables {
-    const fn new() -> Tables {
+/// The tables of the method of 16 nodes.
+pub static GAUSS_16: Tables<8> = Tables::new();
+
+impl<const P: usize> Tables<P> {
+    /// Number of nodes.
+    const NODES: usize = 2 * P;
+
+    const fn new() -> Tables<P> {
         let mut tables = Tables {
-            node: [0.0; PAIRS],
-            mean: [0.0; PAIRS],
-            tilt: [0.0; PAIRS],
-            once_from_sums: [[0.0; PAIRS]; PAIRS],
-            once_from_differences: [[0.0; PAIRS]; PAIRS],
-            twice_from_sums: [[0.0; PAIRS]; PAIRS],
-            twice_from_differences: [[0.0; PAIRS]; PAIRS],
-            series_from_sums: [[0.0; PAIRS]; PAIRS],
-            series_from_differences: [[0.0; PAIRS]; PAIRS],
-            powers_from_even: [[0.0; PAIRS]; PAIRS],
-            powers_from_odd: [[0.0; PAIRS]; PAIRS],
+            node: [0.0; P],
+            mean: [0.0; P],
+            tilt: [0.0; P],
+            once_from_sums: [[0.0; P]; P],
+            once_from_differences: [[0.0; P]; P],
+            twice_from_sums: [[0.0; P]; P],
+            twice_from_differences: [[0.0; P]; P],
+            series_from_sums: [[0.0; P]; P],
+            series_from_differences: [[0.0; P]; P],
+            powers_from_even: [[0.0; P]; P],
+            powers_from_odd: [[0.0; P]; P],
         };
-        let mut node = [Double::ZERO; PAIRS];
-        let mut at_node = [[Double::ZERO; NODES + 2]; PAIRS];
+        let mut node = [Double::ZERO; P];
+        let mut at_node = [[Double::ZERO; MOST_NODES + 2]; P];
         let mut i = 0;
-        while i < PAIRS {
-            node[i] = gauss_node(i);
+        while i < P {
+            node[i] = gauss_node(i, Self::NODES);
             at_node[i] = legendre(node[i]);
             tables.node[i] = node[i].value();
             i += 1;
         }
         let powers = legendre_powers();
         let mut j = 0;
-        while j < PAIRS {
+        while j < P {
             // Row of a_k over sums or differences: (2k+1)/2 · w_j · P_k(u_j).
-            let weight = gauss_weight(node[j], &at_node[j]);
-            let mut share = [Double::ZERO; NODES];
+            let weight = gauss_weight(node[j], &at_node[j], Self::NODES);
+            let mut share = [Double::ZERO; MOST_NODES];
             let mut k = 0;
-            while k < NODES {
+            while k < Self::NODES {
                 share[k] = weight.mul(at_node[j][k]).scale(0.5 * (2 * k + 1) as f64);
                 k += 1;
             }
             tables.mean[j] = share[0].value();
             tables.tilt[j] = share[1].div(Double::new(3.0)).value();
             let mut i = 0;
-            while i < PAIRS {
+            while i < P {
                 let p = &at_node[i];
                 tables.once_from_sums[j][i] = sum_once(&share, p, 0).value();
                 tables.once_from_differences[j][i] = sum_once(&share, p, 1).value();
@@ -141,20 +145,20 @@ const fn twice(p: &Legendre, k: usize) -> Double {
     }
 }
 
-const fn sum_once(share: &[Double; NODES], p: &Legendre, parity: usize) -> Double {
+const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
     let mut sum = Double::ZERO;
     let mut k = parity;
-    while k < NODES {
+    while k < MOST_NODES {
         sum = sum.add(share[k].mul(once(p, k)));
         k += 2;
     }
     sum
 }
 
-const fn sum_twice(share: &[Double; NODES], p: &Legendre, parity: usize) -> Double {
+const fn sum_twice(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
     let mut sum = Double::ZERO;
     let mut k = parity;
-    while k < NODES {
+    while k < MOST_NODES {
         sum = sum.add(share[k].mul(twice(p, k)));
         k += 2;
     }
@@ -168,12 +172,12 @@ const fn integrated(coefficient: Double, p: usize) -> f64 {
         .value()
 }
 
-/// P_0 to P_17 at `u`, by Bonnet's recursion.
+/// P_0 to P_n+1 at `u`, by Bonnet's recursion.
 const fn legendre(u: Double) -> Legendre {
-    let mut p = [Double::ONE; NODES + 2];
+    let mut p = [Double::ONE; MOST_NODES + 2];
     p[1] = u;
     let mut k = 1;
-    while k < NODES + 1 {
+    while k < MOST_NODES + 1 {
         p[k + 1] = u
             .mul(p[k])
             .scale((2 * k + 1) as f64)
@@ -185,12 +189,12 @@ const fn legendre(u: Double) -> Legendre {
 }
 
 /// `[k][m]`: the coefficient of u^m in P_k.
-const fn legendre_powers() -> [[Double; NODES]; NODES] {
-    let mut c = [[Double::ZERO; NODES]; NODES];
+const fn legendre_powers() -> [[Double; MOST_NODES]; MOST_NODES] {
+    let mut c = [[Double::ZERO; MOST_NODES]; MOST_NODES];
     c[0][0] = Double::ONE;
     c[1][1] = Double::ONE;
     let mut k = 1;
-    while k + 1 < NODES {
+    while k + 1 < MOST_NODES {
         let divisor = Double::new((k + 1) as f64);
         let mut m = 0;
         while m <= k + 1 {
@@ -206,38 +210,38 @@ const fn legendre_powers() -> [[Double; NODES]; NODES] {
     c
 }
 
-/// The derivative of P_16 at `u`.
-const fn legendre_slope(u: Double, p: &Legendre) -> Double {
-    p[NODES - 1]
-        .sub(u.mul(p[NODES]))
-        .scale(NODES as f64)
+/// The derivative of P_n at `u`.
+const fn legendre_slope(u: Double, p: &Legendre, n: usize) -> Double {
+    p[n - 1]
+        .sub(u.mul(p[n]))
+        .scale(n as f64)
         .div(Double::ONE.sub(u.mul(u)))
 }
 
-/// The i-th positive zero of P_16, by Newton's method from Tricomi's estimate.
-const fn gauss_node(i: usize) -> Double {
+/// The i-th positive zero of P_n, by Newton's method from Tricomi's estimate.
+const fn gauss_node(i: usize, n: usize) -> Double {
     // cos(π(4k−1)/(4n+2)) for the k-th largest zero, by its power series.
-    let k = PAIRS - i;
-    let angle = std::f64::consts::PI * (4 * k - 1) as f64 / (4 * NODES + 2) as f64;
-    let (mut term, mut cosine, mut n) = (1.0, 1.0, 0);
-    while n < 12 {
-        n += 1;
-        term *= -angle * angle / ((2 * n - 1) * (2 * n)) as f64;
+    let k = n / 2 - i;
+    let angle = std::f64::consts::PI * (4 * k - 1) as f64 / (4 * n + 2) as f64;
+    let (mut term, mut cosine, mut m) = (1.0, 1.0, 0);
+    while m < 12 {
+        m += 1;
+        term *= -angle * angle / ((2 * m - 1) * (2 * m)) as f64;
         cosine += term;
     }
     let mut u = Double::new(cosine);
     let mut round = 0;
     while round < 6 {
         let p = legendre(u);
-        u = u.sub(p[NODES].div(legendre_slope(u, &p)));
+        u = u.sub(p[n].div(legendre_slope(u, &p, n)));
         round += 1;
     }
     u
 }
 
-/// The weight of a node: 2 / ((1 − u²) P'_16(u)²).
-const fn gauss_weight(u: Double, p: &Legendre) -> Double {
-    let slope = legendre_slope(u, p);
+/// The weight of a node: 2 / ((1 − u²) P'_n(u)²).
+const fn gauss_weight(u: Double, p: &Legendre, n: usize) -> Double {
+    let slope = legendre_slope(u, p, n);
     Double::new(2.0).div(Double::ONE.sub(u.mul(u)).mul(slope.mul(slope)))
 }
 
@@ -247,17 +251,20 @@ mod tests {
 
     /// f(u) = uⁿ: every table against the integral done by hand.
     #[test]
-    fn powers_up_to_degree_fifteen_are_integrated_exactly() {
-        let t = &GAUSS_16;
-        for n in 0..NODES as i32 {
+    fn powers_up_to_the_number_of_nodes_are_integrated_exactly() {
+        check(&GAUSS_8);
+        check(&GAUSS_16);
+    }
+
+    fn check<const P: usize>(t: &Tables<P>) {
+        for n in 0..2 * P as i32 {
             let even = n % 2 == 0;
             let values = t.node.map(|u| 2.0 * u.powi(n));
-            let dot =
-                |row: &[f64; PAIRS]| -> f64 { row.iter().zip(values).map(|(a, b)| a * b).sum() };
+            let dot = |row: &[f64; P]| -> f64 { row.iter().zip(values).map(|(a, b)| a * b).sum() };
             let apply =
-                |m: &Columns, i: usize| -> f64 { (0..PAIRS).map(|j| m[j][i] * values[j]).sum() };
-            let expand = |powers: &Columns, series: &Columns, i: usize| -> f64 {
-                (0..PAIRS).map(|k| powers[k][i] * apply(series, k)).sum()
+                |m: &Columns<P>, i: usize| -> f64 { (0..P).map(|j| m[j][i] * values[j]).sum() };
+            let expand = |powers: &Columns<P>, series: &Columns<P>, i: usize| -> f64 {
+                (0..P).map(|k| powers[k][i] * apply(series, k)).sum()
             };
             let order = f64::from(n + 1);
             let next = f64::from(n + 2);

@@ -32,7 +32,7 @@ pub const SEPARATRIX_ROUNDING: f64 = 1e-14;
 /// size 300 and cancel. Measured: 4e-13.
 pub const FAR_ORBIT: f64 = 1e-12;
 
-/// What issue 3 asks for at a tolerance of 1e-9 or less. Measured: 8e-11 at
+/// What is promised at a tolerance of 1e-9 or less. Measured: 8e-11 at
 /// 1e-9, 4e-13 at 1e-12.
 pub const ESCAPE: f64 = 1e-9;
 

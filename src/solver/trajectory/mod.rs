@@ -15,6 +15,7 @@ use super::orbit::Orbit;
 pub use super::outcome::{Failure, Progress};
 use super::pieces::{Piece, Pieces};
 use super::step_control::StepControl;
+use super::stride::Strides;
 use super::{Equation, State};
 
 mod extension;
@@ -58,6 +59,8 @@ pub struct Trajectory {
     /// The last start was good for a single advance: the host changes the
     /// equation at each communication point, and looking ahead is of no use.
     restless: bool,
+    /// Where communication points lie far apart.
+    strides: Strides,
     /// How far the motion has swung, where that is recorded.
     extremes: Option<Extremes>,
     /// The time up to which it is, counted from the origin.
@@ -88,6 +91,7 @@ impl Trajectory {
             follows_orbits: true,
             advances: 0,
             restless: false,
+            strides: Strides::NONE,
             extremes: None,
             recorded: Double::ZERO,
         }
@@ -122,10 +126,16 @@ impl Trajectory {
 
     /// Starts anew from the present state at `time`: the equation has changed.
     pub fn restart(&mut self, time: Double) {
-        self.start = self.state();
-        self.origin = time;
         self.restless = self.advances == 1;
         self.advances = 0;
+        self.strides.restart();
+        self.stand_at(time, self.state());
+    }
+
+    /// Forgets the motion so far, which has come to `state` at `time`.
+    fn stand_at(&mut self, time: Double, state: State) {
+        self.origin = time;
+        self.start = state;
         self.pieces.clear();
         self.index = 0;
         self.now = Double::ZERO;
@@ -167,6 +177,7 @@ impl Trajectory {
             && (0.0..=self.end().value()).contains(&self.slack)
             && length > 0.0
             && length.is_finite()
+            && self.strides.are_sound()
     }
 
     /// Follows the motion for the time `step` > 0. The `equation` must be the
@@ -190,7 +201,8 @@ impl Trajectory {
             return Ok(Progress::Whole);
         }
         let mut target = self.now.plus(step);
-        let mut substeps = 0;
+        let mut budget = MOST_SUBSTEPS;
+        let mut clear = true;
         loop {
             if let Some((limit, at)) = self.stop
                 && target.since(at) >= 0.0
@@ -203,16 +215,22 @@ impl Trajectory {
                 self.arrive(target);
                 return Ok(Progress::Whole);
             }
-            if substeps == MOST_SUBSTEPS {
+            if budget == 0 {
                 let after = step - self.stand_at_end(target);
                 return Err(Failure::TooManySubsteps {
                     most: MOST_SUBSTEPS,
                     after,
                 });
             }
-            substeps += 1;
             let rest = target.since(self.end());
-            let shift = match self.extend(equation, rest) {
+            let added = if clear && self.strides_over(equation, rest) {
+                Ok(self.stride(equation, target, &mut budget, &mut clear))
+            } else {
+                budget -= 1;
+                clear = true;
+                self.extend(equation, rest)
+            };
+            let shift = match added {
                 Ok(shift) => shift,
                 Err(length) => {
                     let after = step - self.stand_at_end(target);
@@ -220,7 +238,7 @@ impl Trajectory {
                 }
             };
             target = target.sub(shift);
-            if self.at_rest {
+            if self.at_rest || target == Double::ZERO {
                 return Ok(Progress::Whole);
             }
             if let Some(orbit) = self.orbit
