@@ -1,7 +1,8 @@
 //! The integrator of x'' = f(t, x, x'). It knows no actuator and no FMI.
 //!
-//! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD lanes;
-//! * [`segment`]: the polynomial that a substep leaves behind;
+//! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
+//! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
+//! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
 //! * [`orbit`]: a motion that repeats;
