@@ -7,10 +7,11 @@
 //! 2. [`actuator`]: the physics, Eq. 16 of the paper, folded and driven;
 //! 3. [`pull_in`]: the voltages beyond which the actuator collapses;
 //! 4. [`scene`]: what a host sets; [`view`]: what it reads;
-//! 5. [`variables`]: the table that gives both their names and limits;
-//! 6. [`description`]: the table as `modelDescription.xml`;
-//! 7. [`slave`]: phases, checks and communication steps of an instance;
-//! 8. [`abi`]: the C functions of FMI 2.0, the only room with unsafe code.
+//! 5. [`sweep`]: many scenes at once, for Rust programs;
+//! 6. [`variables`]: the table that gives both their names and limits;
+//! 7. [`description`]: the table as `modelDescription.xml`;
+//! 8. [`slave`]: phases, checks and communication steps of an instance;
+//! 9. [`abi`]: the C functions of FMI 2.0, the only room with unsafe code.
 //!
 //! Life of an instance: `fmi2Instantiate` makes a [`slave::Instance`] with the
 //! start values of the table; setters change its [`scene::Scene`]; at the end of
@@ -25,5 +26,6 @@ pub mod pull_in;
 pub mod scene;
 pub mod slave;
 pub mod solver;
+pub mod sweep;
 pub mod variables;
 pub mod view;

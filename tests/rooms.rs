@@ -6,13 +6,18 @@ use std::path::{Path, PathBuf};
 /// Room, the rooms of ours it may import, the foreign crates it may import.
 const LAW: &[(&str, &[&str], &[&str])] = &[
     ("solver", &[], &["fearless_simd", "nalgebra", "serde"]),
-    ("actuator", &["solver"], &["serde"]),
+    ("actuator", &["solver"], &["fearless_simd", "serde"]),
     ("pull_in", &["actuator"], &[]),
     ("scene", &["actuator", "solver"], &["serde"]),
     (
         "view",
         &["actuator", "pull_in", "scene", "solver"],
         &["serde"],
+    ),
+    (
+        "sweep",
+        &["actuator", "scene", "solver"],
+        &["fearless_simd"],
     ),
     ("variables", &["actuator", "scene", "solver", "view"], &[]),
     (

@@ -5,14 +5,17 @@
 //! * [`parameters`]: what describes an actuator;
 //! * [`coefficients`]: parameters folded into the numbers of the equation;
 //! * [`drive`]: voltage and prestress as functions of time;
-//! * [`motion`]: the equation of motion (Eq. 16) and its energy (Eq. 18).
+//! * [`motion`]: the equation of motion (Eq. 16) and its energy (Eq. 18);
+//! * [`fleet`]: many of them side by side.
 
 pub mod coefficients;
 pub mod drive;
+pub mod fleet;
 pub mod motion;
 pub mod parameters;
 
 pub use coefficients::Coefficients;
 pub use drive::Drive;
+pub use fleet::Fleet;
 pub use motion::Motion;
 pub use parameters::Parameters;

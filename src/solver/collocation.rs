@@ -15,6 +15,7 @@ use std::ops::RangeInclusive;
 use fearless_simd::Simd;
 
 use super::lanes::Lanes;
+use super::number::Number;
 use super::tables::{Columns, Tables};
 use super::{LocalEquation, State};
 
@@ -51,6 +52,20 @@ pub struct Substep<const P: usize> {
     pub sweeps: u32,
     /// By how much a sweep shrank the change of the one before.
     pub contraction: f64,
+}
+
+impl<const P: usize> Series<P> {
+    /// The series of a constant f.
+    #[must_use]
+    pub fn constant(f: f64) -> Series<P> {
+        let (mut even, odd) = ([0.0; P], [0.0; P]);
+        even[0] = f;
+        Series {
+            half: 1.0,
+            even,
+            odd,
+        }
+    }
 }
 
 impl<const P: usize> Substep<P> {
@@ -248,23 +263,32 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     }
 }
 
-/// f of a substep continued to u, by Clenshaw's summation of its Legendre series.
+/// f of a substep continued to u.
 #[inline(always)]
-fn continued<S: Simd, V: Lanes<S, P>, const P: usize>(series: &Series<P>, u: V) -> V {
+fn continued<N: Number, const P: usize>(series: &Series<P>, u: N) -> N {
+    let size = 1.0 / (series.half * series.half);
+    let coefficient = |degree: usize| {
+        let half = if degree % 2 == 0 {
+            &series.even
+        } else {
+            &series.odd
+        };
+        u.same(half[degree / 2])
+    };
+    clenshaw::<N, P>(u, coefficient) * u.same(size)
+}
+
+/// A Legendre series of degree 2P − 1 at u, by Clenshaw's summation.
+#[inline(always)]
+pub(super) fn clenshaw<N: Number, const P: usize>(u: N, coefficient: impl Fn(usize) -> N) -> N {
     let number = |value: f64| u.same(value);
     let (mut next, mut after) = (number(0.0), number(0.0));
-    for k in (0..2 * P).rev() {
-        let coefficient = if k % 2 == 0 {
-            series.even[k / 2]
-        } else {
-            series.odd[k / 2]
-        };
-        let k = k as f64;
-        let rise = (2.0 * k + 1.0) / (k + 1.0);
-        let fall = -(k + 1.0) / (k + 2.0);
-        let sum =
-            (u * number(rise)).mul_add(next, after.mul_add(number(fall), number(coefficient)));
+    for degree in (0..2 * P).rev() {
+        let k = degree as f64;
+        let rise = u * number((2.0 * k + 1.0) / (k + 1.0));
+        let fall = number(-(k + 1.0) / (k + 2.0));
+        let sum = rise.mul_add(next, after.mul_add(fall, coefficient(degree)));
         (next, after) = (sum, next);
     }
-    next * number(1.0 / (series.half * series.half))
+    next
 }

@@ -28,6 +28,10 @@ pub trait Lanes<S: Simd, const P: usize>: Number {
     #[must_use]
     fn min(self, other: Self) -> Self;
 
+    /// The angles less whole turns.
+    #[must_use]
+    fn within_a_turn(self) -> Self;
+
     /// The largest value in any lane.
     #[must_use]
     fn largest(self) -> f64;
@@ -100,6 +104,13 @@ macro_rules! lanes {
             #[inline(always)]
             fn min(self, other: Self) -> Self {
                 <Self as SimdBase<S>>::min(self, other)
+            }
+
+            #[inline(always)]
+            fn within_a_turn(self) -> Self {
+                let number = |value: f64| self.same(value);
+                let turns = (self * number(0.5 * std::f64::consts::FRAC_1_PI)).round_ties_even();
+                self - turns * number(2.0 * PI_HIGH) - turns * number(2.0 * PI_LOW)
             }
 
             #[inline(always)]

@@ -3,6 +3,7 @@
 //! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
 //! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
 //! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
+//! * [`batch`]: many motions at once, one in each lane;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
 //! * [`orbit`]: a motion that repeats;
@@ -11,6 +12,7 @@
 //! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives;
 //! * [`trajectory`]: segments one after another, reused where the motion repeats.
 
+pub mod batch;
 pub mod collocation;
 pub mod double;
 pub mod extremes;

@@ -15,11 +15,11 @@ use super::tables::GAUSS_8;
 use super::{Equation, LocalEquation, State};
 
 /// Node pairs of a stride.
-const PAIRS: usize = 4;
+pub const PAIRS: usize = 4;
 
 /// The end of a stride misses less than this part of the estimate below: 16 to
 /// 26 000 times less on an AC motion near resonance, 2000 times in the mean.
-const NEGLECTED: f64 = 1000.0;
+pub const NEGLECTED: f64 = 1000.0;
 
 /// A stride shorter than this part of what it was to be cannot go on.
 const SHORTEST: f64 = 1e-12;
@@ -29,6 +29,9 @@ const FEW: f64 = 4.0;
 
 /// By how much the contraction may be larger than in the stride before.
 const GROWTH: f64 = 1.2;
+
+/// Strides that may be needed for the way of one.
+const MOST_SHORT: u32 = 100;
 
 /// A contraction below this is rounding.
 const LEAST: f64 = 1e-3;
@@ -133,10 +136,8 @@ impl Strides {
             let local = equation.at(way.time);
             let wanted = self.length.unwrap_or(time_scale);
             let free = wanted.min(local.longest_substep());
-            // The last two share what is left.
             let last = rest < 2.0 * free;
-            let parts = if rest <= free { 1.0 } else { 0.5 };
-            let length = if last { parts * rest } else { free };
+            let length = share(rest, free);
             let (substep, factor) = match self.solve(simd, &local, control, way, length) {
                 Ok(solved) => solved,
                 Err(end) => return end,
@@ -156,7 +157,7 @@ impl Strides {
                 self.length = Some(next.max(wanted));
             } else {
                 self.length = Some(next);
-                self.contraction = GROWTH * substep.contraction.max(LEAST) / (length * length);
+                self.contraction = expected(substep.contraction) / (length * length);
             }
             way.state = substep.end;
             if length == rest {
@@ -217,11 +218,49 @@ impl Strides {
     }
 }
 
+/// The length of the next stride, where it may be as long as `free` and `rest` is
+/// to go: the last two share what is left.
+#[inline(always)]
+pub fn share(rest: f64, free: f64) -> f64 {
+    match rest {
+        _ if rest <= free => rest,
+        _ if rest < 2.0 * free => 0.5 * rest,
+        _ => free,
+    }
+}
+
+/// The contraction to be expected after this one.
+#[inline(always)]
+pub fn expected(contraction: f64) -> f64 {
+    GROWTH * contraction.max(LEAST)
+}
+
+/// The state a little later, where strides can go there.
+pub fn state_after<E: Equation>(
+    level: Level,
+    equation: &E,
+    control: StepControl,
+    time: Double,
+    state: State,
+    offset: f64,
+) -> Option<State> {
+    let mut way = Way {
+        time,
+        state,
+        target: time.plus(offset),
+        clear: (f64::NEG_INFINITY, f64::INFINITY),
+        budget: MOST_SHORT,
+    };
+    let mut strides = Strides::NONE;
+    let end = strides.go(level, equation, control, &mut way);
+    (end == End::Reached).then_some(way.state)
+}
+
 /// Estimate of the error at the end of a stride. A Legendre series that falls
 /// geometrically reaches at degree 4P, the first that is integrated wrongly,
 /// the square of what it has at degree 2P, by its size.
 #[inline(always)]
-fn end_error(substep: &Substep<PAIRS>) -> f64 {
+pub fn end_error(substep: &Substep<PAIRS>) -> f64 {
     let Series { even, odd, .. } = &substep.series;
     let size = even[0].abs() + odd[0].abs() + even[1].abs();
     let tail = substep.tail();

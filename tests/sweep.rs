@@ -1,0 +1,102 @@
+//! Many scenes at once against the same scenes one by one.
+
+use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::solver::limits::Limit;
+use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
+use proptest::prelude::*;
+
+fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Scene {
+    let mut scene = Scene::at_start();
+    scene.parameters.surface_energy = surface[0];
+    scene.parameters.surface_tension = surface[1];
+    scene.parameters.surface_elasticity = surface[2];
+    scene.drive.harmonic.amplitude = amplitude;
+    scene.drive.harmonic.frequency = frequency;
+    scene
+}
+
+fn difference(one: &Outcome, other: &Outcome) -> f64 {
+    [
+        one.state.position - other.state.position,
+        one.state.rate - other.state.rate,
+        one.extremes.lowest - other.extremes.lowest,
+        one.extremes.highest - other.extremes.highest,
+    ]
+    .into_iter()
+    .fold(0.0, |worst, difference| worst.max(difference.abs()))
+}
+
+/// Amplitudes at ω = 0.1438 over 2000 units of time, `tests/reference/amplitudes.json`,
+/// and the same scene among 40 others.
+#[test]
+fn a_frequency_response_has_the_amplitude_of_the_reference() {
+    let mut scenes: Vec<Scene> = (0..40)
+        .map(|k| alternating([0.05, 0.05, 0.2], 0.3, 0.13 + 0.001 * f64::from(k)))
+        .collect();
+    scenes[17] = alternating([0.05, 0.05, 0.2], 0.3, 0.1438);
+    let outcome = follow(&scenes, 2000.0, 1e-12)[17].expect("it can be followed");
+    let thickness = |stretch: f64| 1.0 / (stretch * stretch);
+    let (lowest, highest) = (outcome.extremes.lowest, outcome.extremes.highest);
+    let amplitude = 0.5 * (thickness(lowest) - thickness(highest));
+    assert!((amplitude - 0.788_423_059_3).abs() < 1e-9, "{amplitude}");
+}
+
+/// Those that cannot share lanes: constant inputs, inputs given by derivatives,
+/// a fast drive, and a collapse.
+#[test]
+fn scenes_of_all_kinds_come_out_in_their_order() {
+    let usual = alternating([0.05, 0.05, 0.2], 0.3, 0.1438);
+    let mut constant = usual;
+    constant.drive.harmonic.amplitude = 0.0;
+    constant.drive.voltage.set_value(0.6);
+    let mut ramp = usual;
+    ramp.drive.voltage.set_derivative(1, 1e-3);
+    let fast = alternating([0.05, 0.05, 0.2], 0.3, 40.0);
+    let mut collapse = alternating([0.0, 0.02, 0.0], 0.3, 0.117);
+    collapse.limits.lower = 1e-3;
+    collapse.limits.upper = 1e4;
+    let scenes = [usual, constant, ramp, fast, collapse];
+    let outcomes = follow(&scenes, 1300.0, 1e-12);
+    for (scene, outcome) in scenes.iter().zip(&outcomes) {
+        let (one, many) = (follow_one(scene, 1300.0, 1e-12), *outcome);
+        let (one, many) = (one.expect("followed"), many.expect("followed"));
+        assert_eq!(one.collapse, many.collapse);
+        assert!(difference(&one, &many) < 1e-9 * one.extremes.highest.powi(2));
+    }
+    let (limit, time) = outcomes[4].expect("followed").collapse.expect("it escapes");
+    assert_eq!(limit, Limit::Upper, "{:?}", outcomes[4]);
+    // From two integrators; the way there multiplies every rounding.
+    assert!((time - 1_251.031_377).abs() < 1e-4, "{time}");
+}
+
+#[test]
+fn no_scene_has_no_outcome() {
+    assert!(follow(&[], 100.0, 1e-9).is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Bounded random scenes, more than there are lanes.
+    #[test]
+    fn random_scenes_move_as_they_do_alone(
+        numbers in prop::collection::vec((0.0..0.1_f64, 0.0..0.1_f64, 0.05..0.4_f64, 0.05..0.3_f64, 0.05..0.4_f64, -0.3..0.2_f64), 1..30),
+        digits in 4..12_i32,
+    ) {
+        let scenes: Vec<Scene> = numbers
+            .iter()
+            .map(|&(gamma, tau, elasticity, amplitude, frequency, prestress)| {
+                let mut scene = alternating([gamma, tau, elasticity], amplitude, frequency);
+                scene.drive.prestress.set_value(prestress);
+                scene
+            })
+            .collect();
+        let tolerance = 10_f64.powi(-digits);
+        for (scene, outcome) in scenes.iter().zip(follow(&scenes, 200.0, tolerance)) {
+            let one = follow_one(scene, 200.0, 1e-13).expect("followed");
+            let many = outcome.expect("followed");
+            // The ten tolerances that are promised, for the rate and the extremes too.
+            prop_assert!(difference(&one, &many) < 10.0 * tolerance, "{one:?} {many:?}");
+        }
+    }
+}
