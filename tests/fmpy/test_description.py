@@ -49,6 +49,7 @@ def test_model_structure_lists_states_and_dependencies(description):
     assert (description.numberOfContinuousStates, description.numberOfEventIndicators) == (2, 2)
     derivatives = {d.variable.name: d.variable.derivative.name for d in description.derivatives}
     assert derivatives == {"lambda_dot": "lambda", "lambda_ddot": "lambda_dot"}
+    assert [v.name for v in description.modelVariables if v.reinit] == ["lambda", "lambda_dot"]
 
     def dependencies(unknowns):
         return {u.variable.name: {known.name for known in u.dependencies} for u in unknowns}
