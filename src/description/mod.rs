@@ -151,6 +151,8 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
                 nominal: Number(nominal),
                 start: start.map(Number),
                 derivative: variable.derivative_of.map(index),
+                // A collapse sets the states.
+                reinit: STATES.contains(&value_reference).then_some(true),
             });
         }
         Kind::Boolean => {

@@ -222,6 +222,8 @@ pub struct Real {
     pub start: Option<Number>,
     #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
     pub derivative: Option<u32>,
+    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
+    pub reinit: Option<bool>,
 }
 
 #[derive(Serialize)]

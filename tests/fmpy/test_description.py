@@ -1,6 +1,8 @@
 """The model description as FMPy reads it."""
 
 import math
+import zipfile
+from xml.etree import ElementTree
 
 import fmpy
 from fmpy.validation import validate_fmu
@@ -43,6 +45,14 @@ def test_capabilities_are_declared(description):
     assert slave.canHandleVariableCommunicationStepSize and slave.canInterpolateInputs
     assert slave.maxOutputDerivativeOrder == 1
     assert not slave.canRunAsynchronuously
+
+
+def test_states_may_jump_at_a_collapse(fmu_path):
+    """FMPy 0.3.32 does not read this attribute of FMI 2."""
+    with zipfile.ZipFile(fmu_path) as archive:
+        variables = ElementTree.fromstring(archive.read("modelDescription.xml")).iter("ScalarVariable")
+    jumping = [variable.get("name") for variable in variables if variable.find("Real[@reinit='true']") is not None]
+    assert jumping == ["lambda", "lambda_dot"]
 
 
 def test_model_structure_lists_states_and_dependencies(description):
