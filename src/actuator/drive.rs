@@ -177,16 +177,12 @@ impl Drive {
         !alternating && self.voltage.is_constant() && self.prestress.is_constant()
     }
 
-    /// The same drive with its inputs counted from `time` on.
-    #[must_use]
-    pub fn rebased(&self, time: Double) -> Drive {
+    /// Counts the time of the inputs from `time` on.
+    pub fn rebase(&mut self, time: Double) {
         let shift = time.since(self.since);
-        Drive {
-            since: time,
-            voltage: self.voltage.shifted(shift),
-            prestress: self.prestress.shifted(shift),
-            harmonic: self.harmonic,
-        }
+        self.since = time;
+        self.voltage = self.voltage.shifted(shift);
+        self.prestress = self.prestress.shifted(shift);
     }
 
     /// Total voltage and prestress at `time` as they change in a direction,
@@ -206,11 +202,9 @@ impl Drive {
     /// The drive seen from `time`.
     #[must_use]
     pub fn at(&self, time: Double) -> LocalDrive {
-        let Drive {
-            mut voltage,
-            prestress,
-            ..
-        } = self.rebased(time);
+        let shift = time.since(self.since);
+        let mut voltage = self.voltage.shifted(shift);
+        let prestress = self.prestress.shifted(shift);
         let Harmonic {
             amplitude,
             frequency,

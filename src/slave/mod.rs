@@ -278,7 +278,7 @@ impl Instance {
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
         if let Course::Run(run) = &self.course {
-            self.scene.drive = self.scene.drive.rebased(run.time());
+            self.scene.drive.rebase(run.time());
         }
     }
 

@@ -105,20 +105,25 @@ impl Instance {
         self.bring_drive_up_to_date();
         for (place, &reference) in references.iter().enumerate() {
             let value = value(place);
-            let before = self.scene;
-            match VARIABLES[reference as usize].access {
+            let changed = match VARIABLES[reference as usize].access {
                 Access::Input { of, .. } => {
                     let input = of(&mut self.scene);
+                    let before = *input;
                     input.set_value(value);
                     // Derivatives belong to the value they were set with.
                     if self.fresh_derivatives & (1 << reference) == 0 {
                         input.clear_derivatives();
                     }
+                    *input != before
                 }
-                Access::Setting { set, .. } => set(&mut self.scene, value),
-                Access::Result { .. } => {}
-            }
-            if self.scene != before {
+                Access::Setting { get, set } => {
+                    let before = get(&self.scene);
+                    set(&mut self.scene, value);
+                    before != value
+                }
+                Access::Result { .. } => false,
+            };
+            if changed {
                 self.changed();
             }
         }

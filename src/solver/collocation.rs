@@ -268,7 +268,7 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
 fn continued<N: Number, const P: usize>(series: &Series<P>, u: N) -> N {
     let size = 1.0 / (series.half * series.half);
     let coefficient = |degree: usize| {
-        let half = if degree % 2 == 0 {
+        let half = if degree.is_multiple_of(2) {
             &series.even
         } else {
             &series.odd

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::State;
 use super::double::Double;
 use super::segment::Segment;
 
@@ -25,45 +24,43 @@ impl Piece {
     }
 }
 
-/// The pieces in use. Stored as a plain list of them, so that a state that is
-/// saved holds no more than is needed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// The pieces in use.
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(into = "Vec<Piece>", try_from = "Vec<Piece>")]
 pub struct Pieces {
-    /// One more than are kept, to solve the next one in.
-    held: [Piece; CAPACITY + 1],
-    count: usize,
+    /// With room for as many as are kept, so that none is ever allocated later.
+    held: Vec<Piece>,
+}
+
+impl Clone for Pieces {
+    fn clone(&self) -> Pieces {
+        let mut pieces = Pieces::none();
+        pieces.held.extend_from_slice(&self.held);
+        pieces
+    }
 }
 
 impl Pieces {
     /// No piece.
     pub fn none() -> Pieces {
-        let nothing = Piece {
-            begin: Double::ZERO,
-            segment: Segment::nothing(State {
-                position: 0.0,
-                rate: 0.0,
-            }),
-        };
         Pieces {
-            held: [nothing; CAPACITY + 1],
-            count: 0,
+            held: Vec::with_capacity(CAPACITY),
         }
     }
 
     /// Number of pieces in use.
     pub fn count(&self) -> usize {
-        self.count
+        self.held.len()
     }
 
     /// Forgets all pieces.
     pub fn clear(&mut self) {
-        self.count = 0;
+        self.held.clear();
     }
 
     /// The pieces in use.
     pub fn list(&self) -> &[Piece] {
-        &self.held[..self.count]
+        &self.held
     }
 
     /// A piece in use.
@@ -73,24 +70,13 @@ impl Pieces {
 
     /// The last piece.
     pub fn last(&mut self) -> Option<&mut Piece> {
-        self.held[..self.count].last_mut()
+        self.held.last_mut()
     }
 
-    /// A segment that is not in use, to solve the next one in beside the
-    /// others, which stand until it is done.
-    pub fn spare(&mut self) -> &mut Segment {
-        &mut self.held[self.count].segment
-    }
-
-    /// Takes the spare segment into use, after the others or in place of them.
-    pub fn take_spare(&mut self, begin: Double, after_others: bool) {
-        if after_others && self.count < CAPACITY {
-            self.held[self.count].begin = begin;
-            self.count += 1;
-        } else {
-            self.held.swap(0, self.count);
-            self.held[0].begin = begin;
-            self.count = 1;
+    /// Adds a piece, if there is room for it.
+    pub fn push(&mut self, piece: Piece) {
+        if self.held.len() < CAPACITY {
+            self.held.push(piece);
         }
     }
 
@@ -111,29 +97,27 @@ impl Pieces {
 
 impl From<Pieces> for Vec<Piece> {
     fn from(pieces: Pieces) -> Vec<Piece> {
-        pieces.list().to_vec()
+        pieces.held
     }
 }
 
 impl TryFrom<Vec<Piece>> for Pieces {
     type Error = &'static str;
 
-    fn try_from(list: Vec<Piece>) -> Result<Pieces, &'static str> {
+    fn try_from(mut list: Vec<Piece>) -> Result<Pieces, &'static str> {
         if list.len() > CAPACITY {
             return Err("more pieces than a trajectory keeps");
         }
-        let mut pieces = Pieces::none();
         let mut end = Double::ZERO;
-        for mut piece in list {
+        for piece in &mut list {
             let follows = piece.begin.since(end).abs() <= 1e-9 * piece.segment.length();
             if !(piece.segment.is_sound() && follows) {
                 return Err("a piece of the trajectory is damaged");
             }
             piece.segment.expand();
             end = piece.end();
-            pieces.held[pieces.count] = piece;
-            pieces.count += 1;
         }
-        Ok(pieces)
+        list.reserve_exact(CAPACITY - list.len());
+        Ok(Pieces { held: list })
     }
 }

@@ -30,34 +30,27 @@ pub struct Segment {
     /// whoever runs over a whole segment needs its end only.
     #[serde(skip)]
     power: [f64; TERMS],
+    /// 1/half, worked out with them.
+    #[serde(skip)]
+    inverse: f64,
     #[serde(skip)]
     expanded: bool,
 }
 
 impl Segment {
-    /// A segment of no length.
+    /// The motion from `start` to `end` with f given by its series.
     #[must_use]
-    pub const fn nothing(state: State) -> Segment {
+    pub fn new(start: State, end: State, f: &Series<PAIRS>) -> Segment {
         Segment {
-            half: 0.0,
-            start: state,
-            end: state,
-            even: [0.0; PAIRS],
-            odd: [0.0; PAIRS],
+            half: f.half,
+            start,
+            end,
+            even: f.even,
+            odd: f.odd,
             power: [0.0; TERMS],
+            inverse: 0.0,
             expanded: false,
         }
-    }
-
-    /// Makes this the motion from `start` to `end` with f given by its series.
-    pub fn assign(&mut self, start: State, end: State, f: &Series<PAIRS>) {
-        // Not the powers: they are 144 bytes that may never be asked for.
-        self.half = f.half;
-        self.start = start;
-        self.end = end;
-        self.even = f.even;
-        self.odd = f.odd;
-        self.expanded = false;
     }
 
     /// f over the substep.
@@ -111,12 +104,13 @@ impl Segment {
         }
         self.power[1] = self.half * self.start.rate + slope;
         self.power[0] = self.start.position + (self.power[1] - value);
+        self.inverse = 1.0 / self.half;
         self.expanded = true;
     }
 
     fn local(&self, offset: f64) -> f64 {
         debug_assert!(self.expanded);
-        (offset - self.half) / self.half
+        (offset - self.half) * self.inverse
     }
 
     /// x at `offset` after the begin of the segment.
@@ -148,7 +142,7 @@ impl Segment {
         let slope = (1..TERMS)
             .rev()
             .fold(0.0, |sum, k| sum * u + k as f64 * self.power[k]);
-        slope / self.half
+        slope * self.inverse
     }
 
     /// The positions at which the motion turns between two offsets.
@@ -218,9 +212,8 @@ mod tests {
         };
         let (mut even, mut odd) = ([0.0; PAIRS], [0.0; PAIRS]);
         (even[0], odd[0]) = (4.0 * 6.0, 4.0 * 12.0);
-        let mut segment = Segment::nothing(start);
         let half = 2.0;
-        segment.assign(start, end, &Series { half, even, odd });
+        let mut segment = Segment::new(start, end, &Series { half, even, odd });
         segment.expand();
         segment
     }

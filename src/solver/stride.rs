@@ -126,16 +126,18 @@ impl Strides {
         control: StepControl,
         way: &mut Way,
     ) -> End {
-        let local = equation.at(way.time);
-        let time_scale = local.time_scale(way.state);
-        if local.longest_substep() < time_scale {
-            return End::Blocked;
-        }
         loop {
             let rest = way.target.since(way.time);
             let local = equation.at(way.time);
-            let wanted = self.length.unwrap_or(time_scale);
-            let free = wanted.min(local.longest_substep());
+            let longest = local.longest_substep();
+            if longest.is_finite() && longest < local.time_scale(way.state) {
+                return End::Blocked;
+            }
+            let wanted = match self.length {
+                Some(length) => length,
+                None => local.time_scale(way.state),
+            };
+            let free = wanted.min(longest);
             let last = rest < 2.0 * free;
             let length = share(rest, free);
             let (substep, factor) = match self.solve(simd, &local, control, way, length) {

@@ -111,22 +111,23 @@ impl Trajectory {
             self.recorded = self.recorded.sub(begin);
             self.index = 0;
             self.first_turn = None;
+            self.pieces.clear();
         }
         let begin = begin.sub(shift);
-        self.pieces.take_spare(begin, keep);
-        let segment = &mut self.pieces.piece(self.pieces.count() - 1).segment;
+        let mut segment = Segment::new(state, substep.end, &substep.series);
         self.stop = self
             .limits
-            .first_contact(segment, substep.nodes())
+            .first_contact(&mut segment, substep.nodes())
             .map(|(limit, offset)| (limit, begin.plus(offset)));
+        self.pieces.push(Piece { begin, segment });
         if autonomous && self.stop.is_none() {
             self.look_for_turn(state.rate);
         }
         Ok(shift)
     }
 
-    /// Solves the next substep into the spare segment, as long as the tolerance allows but
-    /// no longer than `most`.
+    /// Solves the next substep, as long as the tolerance allows but no longer than
+    /// `most`.
     fn substep<L: LocalEquation>(
         &mut self,
         local: &L,
@@ -175,8 +176,6 @@ impl Trajectory {
                     } else {
                         length * factor
                     });
-                    let segment = self.pieces.spare();
-                    segment.assign(state, substep.end, &substep.series);
                     return Ok(substep);
                 }
                 (Verdict::Reject(factor) | Verdict::Accept(factor), _) => length *= factor,
