@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use dielectric_elastomer_actuator::variables::{Causality, Kind, VARIABLES, Variability, Variable};
-use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
+use pulldown_cmark::{
+    CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, TextMergeStream, html,
+};
 use pulldown_latex::config::{DisplayMode, RenderConfig};
 use pulldown_latex::{Parser as Formula, Storage, push_mathml};
 
@@ -98,7 +100,7 @@ fn page(file: &Path) -> Result<Page> {
         .to_string_lossy()
         .into_owned();
     let options = Options::ENABLE_MATH | Options::ENABLE_TABLES;
-    let mut events: Vec<Event> = Parser::new_ext(&text, options).collect();
+    let mut events: Vec<Event> = TextMergeStream::new(Parser::new_ext(&text, options)).collect();
     let mut page = Page {
         title: name.clone(),
         places: BTreeSet::new(),

@@ -46,6 +46,7 @@ pub fn compile(
         .args(["--package", package.name.as_str()])
         .args(["--target", platform.triple])
         .args(["--message-format", "json-render-diagnostics"])
+        .env("CARGO_PROFILE_RELEASE_LTO", platform.lto)
         .env("RUSTC", &toolchain.rustc)
         .envs(toolchain.environment.iter().cloned())
         .envs(c_environment(zig, platform, &stand, folder)?)
@@ -99,14 +100,21 @@ pub fn link(
         fs::read(input).with_context(|| format!("cannot read {}", input.display()))?;
     let reporters = quiet::undefine_reporters(&mut archive)?;
     let stand_ins = beside("c", quiet::stand_ins(&reporters).as_bytes())?;
-    let mut linker = zig.cc(platform);
-    linker.args(["-shared", "-s", "-O2", "-o"]).arg(output);
+    let mut linker = match platform.format {
+        BinaryFormat::MachO => Command::new("cc"),
+        _ => zig.cc(platform),
+    };
+    linker.args(["-shared", "-O2", "-o"]).arg(output);
     match platform.format {
         BinaryFormat::Pe => {
             linker.arg(beside("def", definitions(names).as_bytes())?);
+            linker.args(["-s", "-Wl,--gc-sections"]);
         }
         BinaryFormat::MachO => {
-            linker.args(names.iter().map(|name| format!("-Wl,-u,_{name}")));
+            let list: String = names.iter().map(|name| format!("_{name}\n")).collect();
+            linker.arg("-exported_symbols_list");
+            linker.arg(beside("exports", list.as_bytes())?);
+            linker.args(["-arch", "x86_64", "-Wl,-dead_strip", "-Wl,-x"]);
         }
         _ => {
             let mut script = OsString::from("-Wl,--version-script=");
@@ -115,7 +123,7 @@ pub fn link(
             linker
                 .arg(script)
                 .args(["-Wl,--undefined-version", "-Wl,-z,defs"]);
-            linker.arg("-Wl,--build-id=none");
+            linker.args(["-s", "-Wl,--gc-sections", "-Wl,--build-id=none"]);
             // Nothing refers to the exported functions; this takes them out of the archive.
             linker.args(names.iter().map(|name| format!("-Wl,-u,{name}")));
         }
@@ -124,13 +132,13 @@ pub fn link(
     let linked = linker
         .arg(stand_ins)
         .arg(&archive)
-        .args(["-lunwind", "-Wl,--gc-sections"])
+        .args(platform.linked.iter().map(|name| format!("-l{name}")))
         .output()
-        .context("cannot start zig")?;
+        .context("cannot start the linker")?;
     fs::remove_file(&archive).context("cannot remove the static library")?;
     ensure!(
         linked.status.success(),
-        "`zig cc` could not link {}:\n{}",
+        "the linker could not make {}:\n{}",
         output.display(),
         said(&linked)
     );

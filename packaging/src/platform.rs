@@ -17,6 +17,12 @@ pub struct Platform {
     pub format: BinaryFormat,
     /// Machine that the binary must be for.
     pub architecture: Architecture,
+    /// Cargo's `lto`. Rust compiles for `windows-gnu` without sections for each function, so that the linker
+    /// cannot drop any: there the compiler has to.
+    pub lto: &'static str,
+    /// Libraries that Rust's standard library is linked against, beside the C library; the unwinder is
+    /// linked in.
+    pub linked: &'static [&'static str],
     /// Libraries that the binary may need, each part of every such system; a `*` at the end
     /// stands for anything. Windows ignores case here.
     pub libraries: &'static [&'static str],
@@ -36,6 +42,8 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "so",
         format: BinaryFormat::Elf,
         architecture: Architecture::X86_64,
+        lto: "off",
+        linked: &["unwind"],
         libraries: &[
             "ld-linux-x86-64.so.2",
             "libc.so.6",
@@ -53,11 +61,15 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "dll",
         format: BinaryFormat::Pe,
         architecture: Architecture::X86_64,
+        lto: "fat",
+        linked: &["unwind", "ws2_32", "userenv"],
         // Part of Windows 10 and later, which Rust's standard library needs anyway.
         libraries: &[
             "KERNEL32.dll",
             "ntdll.dll",
             "bcryptprimitives.dll",
+            "USERENV.dll",
+            "WS2_32.dll",
             "api-ms-win-core-synch-l1-2-0.dll",
             "api-ms-win-crt-*",
         ],
@@ -70,6 +82,8 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "so",
         format: BinaryFormat::Elf,
         architecture: Architecture::Aarch64,
+        lto: "off",
+        linked: &["unwind"],
         libraries: &[
             "ld-linux-aarch64.so.1",
             "libc.so.6",
@@ -87,6 +101,8 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "dylib",
         format: BinaryFormat::MachO,
         architecture: Architecture::X86_64,
+        lto: "off",
+        linked: &[],
         libraries: &["/usr/lib/libSystem.B.dylib"],
         newest_glibc: None,
     },

@@ -5,7 +5,8 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
+use object::BinaryFormat;
 
 use crate::debian::Unpacked;
 use crate::platform::Platform;
@@ -78,6 +79,10 @@ impl Toolchain {
     /// # Errors
     /// If there is none: what was tried, why it failed, and how to get one.
     pub fn find(platform: &Platform, version: &str, shelf: &Path) -> Result<Self> {
+        ensure!(
+            platform.format != BinaryFormat::MachO || cfg!(target_os = "macos"),
+            "Apple's linker and libraries are needed: run this on macOS"
+        );
         if let Some(own) = Self::own(platform)? {
             return Ok(own);
         }
@@ -88,12 +93,6 @@ impl Toolchain {
             },
             Err(error) => format!("{error:#}"),
         };
-        if platform.folder == "darwin64" {
-            bail!(
-                "Rust's standard library for {} is missing: {rustup}",
-                platform.triple
-            );
-        }
         Self::debian(version, shelf).map_err(|error| {
             anyhow::anyhow!(
                 "Rust's standard library for {0} is missing: {rustup}; nor could Debian's packages be \
