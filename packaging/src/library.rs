@@ -46,7 +46,6 @@ pub fn compile(
         .args(["--package", package.name.as_str()])
         .args(["--target", platform.triple])
         .args(["--message-format", "json-render-diagnostics"])
-        .env("CARGO_PROFILE_RELEASE_LTO", platform.lto)
         .env("RUSTC", &toolchain.rustc)
         .envs(toolchain.environment.iter().cloned())
         .envs(c_environment(zig, platform, &stand, folder)?)

@@ -17,9 +17,6 @@ pub struct Platform {
     pub format: BinaryFormat,
     /// Machine that the binary must be for.
     pub architecture: Architecture,
-    /// Cargo's `lto`. Rust compiles for `windows-gnu` without sections for each function, so that the linker
-    /// cannot drop any: there the compiler has to.
-    pub lto: &'static str,
     /// Libraries that Rust's standard library is linked against, beside the C library; the unwinder is
     /// linked in.
     pub linked: &'static [&'static str],
@@ -42,7 +39,6 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "so",
         format: BinaryFormat::Elf,
         architecture: Architecture::X86_64,
-        lto: "off",
         linked: &["unwind"],
         libraries: &[
             "ld-linux-x86-64.so.2",
@@ -56,12 +52,12 @@ pub const PLATFORMS: &[Platform] = &[
     },
     Platform {
         folder: "win64",
-        triple: "x86_64-pc-windows-gnu",
+        // Not `windows-gnu`, which has no section for each function: the linker could drop none.
+        triple: "x86_64-pc-windows-gnullvm",
         zig_target: "x86_64-windows-gnu",
         extension: "dll",
         format: BinaryFormat::Pe,
         architecture: Architecture::X86_64,
-        lto: "fat",
         linked: &["unwind", "ws2_32", "userenv"],
         // Part of Windows 10 and later, which Rust's standard library needs anyway.
         libraries: &[
@@ -82,7 +78,6 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "so",
         format: BinaryFormat::Elf,
         architecture: Architecture::Aarch64,
-        lto: "off",
         linked: &["unwind"],
         libraries: &[
             "ld-linux-aarch64.so.1",
@@ -101,7 +96,6 @@ pub const PLATFORMS: &[Platform] = &[
         extension: "dylib",
         format: BinaryFormat::MachO,
         architecture: Architecture::X86_64,
-        lto: "off",
         linked: &[],
         libraries: &["/usr/lib/libSystem.B.dylib"],
         newest_glibc: None,

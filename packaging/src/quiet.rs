@@ -6,10 +6,13 @@
 //! the standard library; here their symbols lose the definition, and functions that do nothing are linked
 //! in their place.
 
+use std::ops::Range;
+
 use anyhow::{Context, Result};
 use object::read::archive::ArchiveFile;
+use object::read::coff::{CoffBigFile, CoffFile};
 use object::read::elf::ElfFile64;
-use object::{Object, ObjectSymbol, elf};
+use object::{FileKind, Object, ObjectSymbol};
 
 /// Functions that report a panic, by their demangled names. Both may return a zero, or nothing.
 const REPORTERS: &[&str] = &[
@@ -17,41 +20,72 @@ const REPORTERS: &[&str] = &[
     "<<std::sys::backtrace::BacktraceLock>::print::DisplayBacktrace as core::fmt::Display>::fmt",
 ];
 
-/// Bytes of an ELF symbol of 64 bits: name 4, info 1, other 1, section 2, value 8, size 8.
-const SYMBOL: usize = 24;
+/// Where an entry of a symbol table says in which section and at which offset the symbol is defined. Zeros
+/// there mean that it is undefined.
+const ELF: Range<usize> = 6..24;
+const COFF: Range<usize> = 8..14;
+const COFF_BIG: Range<usize> = 8..16;
 
-/// Undefines the reporters in the ELF members of a static library and returns their symbols. In other
-/// formats nothing is found.
+/// Undefines the reporters in the members of a static library, ELF or COFF, and returns their symbols. In
+/// other formats, and where the compiler has merged the functions, nothing is found.
 ///
 /// # Errors
 /// If the bytes are no static library.
 pub fn undefine_reporters(archive: &mut [u8]) -> Result<Vec<String>> {
     let mut found = Vec::new();
-    let mut places = Vec::new();
     let bytes = &*archive;
-    for member in ArchiveFile::parse(bytes)
+    let members = ArchiveFile::parse(bytes)
         .context("the static library is damaged")?
-        .members()
-    {
+        .members();
+    for member in members {
         let data = member?.data(bytes)?;
-        let Ok(file) = ElfFile64::<object::Endianness>::parse(data) else {
-            continue;
-        };
-        for symbol in file.symbols() {
-            let name = symbol.name().unwrap_or_default();
-            if symbol.is_definition() && symbol.is_global() && is_reporter(name) {
-                let entry = std::ptr::from_ref(symbol.elf_symbol()).addr() - bytes.as_ptr().addr();
-                places.push(entry);
-                found.push(name.to_owned());
+        match FileKind::parse(data) {
+            Ok(FileKind::Elf64) => {
+                let file: ElfFile64 = ElfFile64::parse(data)?;
+                let entries = file.symbols().map(|symbol| address(symbol.elf_symbol()));
+                collect(&file, entries, &ELF, &mut found);
             }
+            Ok(FileKind::Coff) => {
+                let file: CoffFile = CoffFile::parse(data)?;
+                let entries = file.symbols().map(|symbol| address(symbol.coff_symbol()));
+                collect(&file, entries, &COFF, &mut found);
+            }
+            Ok(FileKind::CoffBig) => {
+                let file: CoffBigFile = CoffBigFile::parse(data)?;
+                let entries = file.symbols().map(|symbol| address(symbol.coff_symbol()));
+                collect(&file, entries, &COFF_BIG, &mut found);
+            }
+            _ => {}
         }
     }
-    for place in places {
-        let symbol = &mut archive[place..place + SYMBOL];
-        symbol[4..].fill(0);
-        symbol[4] = elf::STB_GLOBAL.0 << 4;
+    let start = address(bytes);
+    let mut names = Vec::new();
+    for (entry, definition, name) in found {
+        let place = entry - start;
+        archive[place + definition.start..place + definition.end].fill(0);
+        names.push(name);
     }
-    Ok(found)
+    Ok(names)
+}
+
+/// Collects the reporters that a file defines: address of the entry, where the definition is in it, name.
+fn collect<'data>(
+    file: &impl Object<'data>,
+    entries: impl Iterator<Item = usize>,
+    definition: &Range<usize>,
+    found: &mut Vec<(usize, Range<usize>, String)>,
+) {
+    for (symbol, entry) in file.symbols().zip(entries) {
+        let name = symbol.name().unwrap_or_default();
+        if symbol.is_definition() && symbol.is_global() && is_reporter(name) {
+            found.push((entry, definition.clone(), name.to_owned()));
+        }
+    }
+}
+
+/// Where something lies in memory.
+fn address<T: ?Sized>(thing: &T) -> usize {
+    std::ptr::from_ref(thing).addr()
 }
 
 /// C functions that stand for the undefined ones.
