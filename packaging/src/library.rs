@@ -52,7 +52,7 @@ pub fn compile(
         // This replaces RUSTFLAGS, so that the binary does not depend on them.
         .env(
             "CARGO_ENCODED_RUSTFLAGS",
-            flags(project, toolchain, platform, &stand)?,
+            flags(project, toolchain, platform)?,
         )
         .stdout(Stdio::piped())
         .spawn()
@@ -163,7 +163,7 @@ pub fn root_package(project: &Metadata) -> Result<&Package> {
         .context("the workspace has no package at its root")
 }
 
-/// What the build scripts of dependencies need to handle C for the platform: compiler, archiver, headers.
+/// What the build scripts of dependencies need to handle C for the platform: programs and headers.
 fn c_environment(
     zig: &Zig,
     platform: &Platform,
@@ -176,7 +176,10 @@ fn c_environment(
         headers.push(folder);
     }
     let triple = platform.triple.replace('-', "_");
+    let usual = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(stand.path.clone()).chain(env::split_paths(&usual));
     Ok(vec![
+        ("PATH".to_owned(), env::join_paths(folders)?),
         (format!("CC_{triple}"), (&stand.cc).into()),
         (format!("AR_{triple}"), (&stand.ar).into()),
         // zig has the target from its own command line and knows it by another name.
@@ -185,15 +188,9 @@ fn c_environment(
     ])
 }
 
-/// Compiler flags, one per `\x1f`: the maker of import libraries, which Windows needs, and what takes
-/// the build machine's paths out of the binary, those of the workspace, the build folder, the
-/// dependencies and the standard library.
-fn flags(
-    project: &Metadata,
-    toolchain: &Toolchain,
-    platform: &Platform,
-    stand: &Stand,
-) -> Result<String> {
+/// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary: those of the
+/// workspace, the build folder, the dependencies and the standard library.
+fn flags(project: &Metadata, toolchain: &Toolchain, platform: &Platform) -> Result<String> {
     let mut replaced: Vec<(String, String)> = resolve(project, platform)?
         .packages
         .iter()
@@ -217,13 +214,10 @@ fn flags(
         format!("{}/lib/rustlib/src/rust", sysroot.display()),
         format!("/rustc/{commit}"),
     ));
-    let mut flags: Vec<String> = replaced
+    let flags: Vec<String> = replaced
         .into_iter()
         .map(|(path, name)| format!("--remap-path-prefix={path}={name}"))
         .collect();
-    if platform.format == BinaryFormat::Pe {
-        flags.push(format!("-Cdlltool={}", stand.dlltool.display()));
-    }
     Ok(flags.join("\x1f"))
 }
 

@@ -22,8 +22,9 @@ pub struct Stand {
     pub cc: PathBuf,
     /// Archiver.
     pub ar: PathBuf,
-    /// Maker of import libraries for Windows.
-    pub dlltool: PathBuf,
+    /// Folder with a `dlltool` of the name that rustc looks for on the path. A flag with its place would get
+    /// into the hashes of the symbols.
+    pub path: PathBuf,
 }
 
 impl Zig {
@@ -107,9 +108,9 @@ impl Zig {
         fs::create_dir_all(folder)
             .with_context(|| format!("cannot make the folder {}", folder.display()))?;
         Ok(Stand {
-            cc: write("cc", &format!("cc -target {}", platform.zig_target))?,
-            ar: write("ar", "ar")?,
-            dlltool: write("dlltool", "dlltool")?,
+            cc: write("zig-cc", &format!("cc -target {}", platform.zig_target))?,
+            ar: write("zig-ar", "ar")?,
+            path: write("x86_64-w64-mingw32-dlltool", "dlltool").map(|_| folder.to_owned())?,
         })
     }
 
