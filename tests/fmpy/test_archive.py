@@ -38,9 +38,9 @@ def test_binaries_hold_no_path_of_the_build_machine(binaries):
 
 
 def test_caught_panics_print_nothing(binaries):
-    """The text of Rust's report of a panic, and of the reader of debug information behind a backtrace."""
+    """The text of Rust's report of a panic, and of the reader of debug information behind a backtrace, are gone."""
     data = next(data for name, data in binaries.items() if "linux64" in name)
-    assert b"RUST_BACKTRACE" not in data
+    assert b"panicked at" not in data
     assert b".debug_info" not in data
 
 
@@ -101,4 +101,4 @@ def test_licence_of_every_linked_crate_is_there(archive):
     assert {crate for crate in linked if f"\n{crate[0]} {crate[1]}: " not in text} == set()
     for name in ("LICENSE-APACHE.txt", "LICENSE-MIT.txt", "llvm-libunwind.txt"):
         assert archive.read(f"documentation/licenses/{name}")
-    assert "standard library" in archive.read("documentation/licenses/rust-standard-library.html").decode()
+    assert "Rust Standard Library" in archive.read("documentation/licenses/rust-standard-library.html").decode()
