@@ -19,14 +19,17 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu test stress bench env clean
+.PHONY: help run fmu fmu-all guide test test-platforms stress bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
 	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
-	@echo 'make fmu    build and pack the FMU only'
+	@echo 'make fmu    build and pack the FMU only, for 64-bit Linux'
+	@echo 'make fmu-all         pack it for every platform that can be built for here'
+	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
+	@echo 'make guide  write the user'"'"'s guide to target/guide/index.html'
 	@echo 'make env    print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean  remove target and .venv'
 	@echo 'PYTHON=...  the Python to use, 3.11 or later (default: python3)'
@@ -38,6 +41,14 @@ run: fmu
 fmu: $(INSTALLED)
 	$(call heading,FMU)
 	@$(CARGO) fmu
+
+fmu-all: $(INSTALLED)
+	$(call heading,FMU for every platform)
+	@$(CARGO) fmu --all
+
+guide: $(INSTALLED)
+	$(call heading,Guide)
+	@$(CARGO) fmu guide
 
 test: $(INSTALLED)
 	$(call heading,Format)
@@ -53,6 +64,10 @@ test: $(INSTALLED)
 	@$(CARGO) test --workspace
 	$(call heading,FMPy tests)
 	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
+
+test-platforms: fmu-all
+	$(call heading,Tests of the platforms)
+	@env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest tests/platforms
 
 stress: $(INSTALLED)
 	$(call heading,Stress tests)

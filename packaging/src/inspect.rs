@@ -1,16 +1,18 @@
-//! Reads a built shared library and says why it must not be shipped.
+//! Reads a built shared library of any platform and says why it must not be shipped.
 
 use std::collections::BTreeSet;
 use std::fmt;
 
 use anyhow::{Context, Result};
 use object::read::elf::ElfFile64;
-use object::{Architecture, NameOrOrdinal, Object};
+use object::{Architecture, BinaryFormat, File, NameOrOrdinal, Object};
 
 use crate::platform::Platform;
 
 /// What a shared library offers to the program that loads it, and demands from the system.
 pub struct Binary {
+    /// Format of the file.
+    pub format: BinaryFormat,
     /// Machine that the code is for.
     pub architecture: Architecture,
     /// Names of the dynamic symbols that it defines.
@@ -24,16 +26,19 @@ pub struct Binary {
 }
 
 impl Binary {
-    /// Reads an ELF file of 64 bits.
+    /// Reads an ELF, PE or Mach-O file.
     ///
     /// # Errors
     /// If the bytes are something else, or damaged.
     pub fn read(bytes: &[u8]) -> Result<Self> {
-        let file: ElfFile64 =
-            ElfFile64::parse(bytes).context("the binary is no ELF file of 64 bits")?;
+        let file = File::parse(bytes).context("the binary is no shared library")?;
         let mut exported = BTreeSet::new();
         for export in file.exports()? {
             exported.insert(match export?.name() {
+                // Mach-O puts an underscore before the names of C.
+                NameOrOrdinal::Name([b'_', name @ ..]) if file.format() == BinaryFormat::MachO => {
+                    text(name)
+                }
                 NameOrOrdinal::Name(name) => text(name),
                 NameOrOrdinal::Ordinal(ordinal) => format!("#{ordinal}"),
             });
@@ -43,10 +48,14 @@ impl Binary {
             libraries.insert(text(library?.name()));
         }
         Ok(Self {
+            format: file.format(),
             architecture: file.architecture(),
             exported,
             libraries,
-            versions: demanded_versions(&file)?,
+            versions: match &file {
+                File::Elf64(file) => demanded_versions(file)?,
+                _ => BTreeSet::new(),
+            },
             size: bytes.len(),
         })
     }
@@ -59,10 +68,12 @@ impl Binary {
     /// Every reason not to ship the library, each as a sentence; none if it is good.
     pub fn faults(&self, platform: &Platform, names: &[&str]) -> Vec<String> {
         let mut faults = Vec::new();
-        if self.architecture != platform.architecture {
+        let found = (self.format, self.architecture);
+        let wanted = (platform.format, platform.architecture);
+        if found != wanted {
             faults.push(format!(
-                "it is for {:?}, {} needs {:?}",
-                self.architecture, platform.folder, platform.architecture
+                "it is {:?} for {:?}, {} needs {:?} for {:?}",
+                found.0, found.1, platform.folder, wanted.0, wanted.1
             ));
         }
         let expected: BTreeSet<String> = names.iter().map(|name| (*name).to_owned()).collect();
@@ -77,23 +88,37 @@ impl Binary {
             ));
         }
         for library in &self.libraries {
-            if !platform.libraries.contains(&library.as_str()) {
+            if !platform
+                .libraries
+                .iter()
+                .any(|allowed| matches(allowed, library))
+            {
                 faults.push(format!(
                     "it needs {library}; allowed are only {}",
                     platform.libraries.join(", ")
                 ));
             }
         }
-        let limit = Version::parse(platform.newest_glibc);
+        let limit = platform.newest_glibc.unwrap_or("none");
         for version in &self.versions {
-            if glibc(version).is_none_or(|needed| Some(needed) > limit) {
+            if glibc(version).is_none_or(|needed| Some(needed) > Version::parse(limit)) {
                 faults.push(format!(
-                    "it needs {version}; the newest allowed is GLIBC_{}",
-                    platform.newest_glibc
+                    "it needs {version}; the newest allowed is GLIBC_{limit}"
                 ));
             }
         }
         faults
+    }
+}
+
+/// Whether a library is an allowed one; a `*` at the end stands for anything. Case does not count, as
+/// on Windows; elsewhere no two libraries of the system differ in case only.
+fn matches(allowed: &str, library: &str) -> bool {
+    let library = library.to_ascii_lowercase();
+    let allowed = allowed.to_ascii_lowercase();
+    match allowed.strip_suffix('*') {
+        Some(start) => library.starts_with(start),
+        None => library == allowed,
     }
 }
 
@@ -162,6 +187,7 @@ mod tests {
     fn good() -> Binary {
         let set = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
         Binary {
+            format: BinaryFormat::Elf,
             architecture: Architecture::X86_64,
             exported: set(NAMES),
             libraries: set(&["libc.so.6", "libm.so.6"]),
@@ -198,7 +224,24 @@ mod tests {
             assert!(newer.starts_with(&format!("it needs {version};")));
         }
         let machine = fault(|binary| binary.architecture = Architecture::Aarch64);
-        assert!(machine.starts_with("it is for Aarch64, linux64 needs X86_64"));
+        assert!(machine.starts_with("it is Elf for Aarch64, linux64 needs Elf for X86_64"));
+        let format = fault(|binary| binary.format = BinaryFormat::Pe);
+        assert!(format.starts_with("it is Pe for X86_64, linux64 needs"));
+    }
+
+    #[test]
+    fn each_platform_has_libraries_of_its_own() {
+        let windows = &PLATFORMS[1];
+        let mut binary = good();
+        binary.format = BinaryFormat::Pe;
+        binary.versions.clear();
+        binary.libraries = ["kernel32.dll", "api-ms-win-crt-heap-l1-1-0.dll"]
+            .map(str::to_owned)
+            .into();
+        assert!(binary.faults(windows, NAMES).is_empty());
+        binary.libraries.insert("libgcc_s_seh-1.dll".to_owned());
+        let faults = binary.faults(windows, NAMES);
+        assert!(faults.len() == 1 && faults[0].starts_with("it needs libgcc_s_seh-1.dll;"));
     }
 
     #[test]

@@ -3,37 +3,57 @@
 //! Rust compiles a static library, `zig cc` links it. Rust's own `cdylib` would need the
 //! build machine's glibc and libgcc_s, and would export a symbol that the crate `fmi-sys`
 //! leaves behind. Here the glibc is chosen by the platform's row, the unwinder is linked in,
-//! and a version script names the exported symbols one by one.
+//! and the exported symbols are named one by one.
 
 use std::collections::BTreeSet;
 use std::env;
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fs;
 use std::io::BufReader;
-use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
 use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Message, Metadata, MetadataCommand, Package};
+use object::BinaryFormat;
 
 use crate::platform::Platform;
+use crate::quiet;
+use crate::toolchain::Toolchain;
+use crate::zig::{Stand, Zig, said};
 
-/// Compiles the root package for the platform and returns the path of the static library.
+/// Compiles the root package for the platform and returns the path of the static library. What the
+/// compilation needs besides lies in `folder`.
 ///
 /// # Errors
 /// If cargo cannot be started or fails; its own messages went to standard error.
-pub fn compile(project: &Metadata, platform: &Platform) -> Result<Utf8PathBuf> {
+pub fn compile(
+    project: &Metadata,
+    toolchain: &Toolchain,
+    zig: &Zig,
+    platform: &Platform,
+    folder: &Path,
+) -> Result<Utf8PathBuf> {
     let package = root_package(project)?;
-    let mut cargo = Command::new(program("CARGO", "cargo"))
+    let stand = zig.stand_in(platform, folder)?;
+    let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&project.workspace_root)
-        .args(["rustc", "--release", "--locked", "--lib"])
+        .arg("rustc")
+        .args(toolchain.flags)
+        .args(["--release", "--locked", "--lib"])
         .args(["--crate-type", "staticlib"])
         .args(["--package", package.name.as_str()])
         .args(["--target", platform.triple])
         .args(["--message-format", "json-render-diagnostics"])
+        .env("RUSTC", &toolchain.rustc)
+        .envs(toolchain.environment.iter().cloned())
+        .envs(c_environment(zig, platform, &stand, folder)?)
         // This replaces RUSTFLAGS, so that the binary does not depend on them.
-        .env("CARGO_ENCODED_RUSTFLAGS", remappings(project, platform)?)
+        .env(
+            "CARGO_ENCODED_RUSTFLAGS",
+            flags(project, toolchain, platform)?,
+        )
         .stdout(Stdio::piped())
         .spawn()
         .context("cannot start cargo")?;
@@ -59,89 +79,69 @@ pub fn compile(project: &Metadata, platform: &Platform) -> Result<Utf8PathBuf> {
     library.context("cargo reported no static library")
 }
 
-/// The linker `zig cc`, which brings the libraries to link against for every target.
-pub struct Linker {
-    /// The command line that starts zig: a program, then arguments.
-    zig: Vec<String>,
-}
-
-impl Linker {
-    /// Finds zig: the environment variable `ZIG`, a command line split like a shell does, or
-    /// the PyPI package `ziglang`.
-    ///
-    /// # Errors
-    /// If zig does not tell its version.
-    pub fn find() -> Result<Self> {
-        let line = env::var("ZIG").unwrap_or_else(|_| "python3 -m ziglang".to_owned());
-        let zig = shlex::split(&line)
-            .filter(|words| !words.is_empty())
-            .with_context(|| format!("ZIG is set to `{line}`, which is no command line"))?;
-        let linker = Self { zig };
-        let advice = || {
-            format!(
-                "cannot run the linker zig as `{line}`: install it, as `make fmu` does or by \
-                 `python3 -m pip install ziglang`, or set the environment variable ZIG to the \
-                 command line that starts it"
-            )
-        };
-        let answer = linker
-            .command()
-            .arg("version")
-            .output()
-            .with_context(advice)?;
-        ensure!(answer.status.success(), "{}: {}", advice(), said(&answer));
-        Ok(linker)
-    }
-
-    /// Links a static library to a shared library at `output` that exports exactly `names`.
-    ///
-    /// # Errors
-    /// If the folder of `output` cannot be written to, or zig refuses to link.
-    pub fn link(
-        &self,
-        input: &Path,
-        output: &Path,
-        platform: &Platform,
-        names: &[&str],
-    ) -> Result<()> {
-        let exports = output.with_extension("exports");
-        if let Some(folder) = output.parent() {
-            fs::create_dir_all(folder)
-                .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+/// Links a static library to a shared library at `output` that exports exactly `names`.
+///
+/// # Errors
+/// If the folder of `output` cannot be written to, or zig refuses to link.
+pub fn link(
+    zig: &Zig,
+    input: &Path,
+    output: &Path,
+    platform: &Platform,
+    names: &[&str],
+) -> Result<()> {
+    let beside = |extension: &str, contents: &[u8]| -> Result<PathBuf> {
+        let path = output.with_extension(extension);
+        fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
+        Ok(path)
+    };
+    let mut archive =
+        fs::read(input).with_context(|| format!("cannot read {}", input.display()))?;
+    let reporters = quiet::undefine_reporters(&mut archive)?;
+    let stand_ins = beside("c", quiet::stand_ins(&reporters).as_bytes())?;
+    let mut linker = match platform.format {
+        BinaryFormat::MachO => Command::new("cc"),
+        _ => zig.cc(platform),
+    };
+    linker.args(["-shared", "-O2", "-o"]).arg(output);
+    match platform.format {
+        BinaryFormat::Pe => {
+            linker.arg(beside("def", definitions(names).as_bytes())?);
+            linker.args(["-s", "-Wl,--gc-sections"]);
         }
-        fs::write(&exports, version_script(names))
-            .with_context(|| format!("cannot write {}", exports.display()))?;
-        let mut script = OsString::from("-Wl,--version-script=");
-        script.push(&exports);
-        let linked = self
-            .command()
-            .args(["cc", "-target", platform.zig_target, "-shared", "-s", "-o"])
-            .arg(output)
-            // Nothing refers to the exported functions; this takes them out of the archive.
-            .args(names.iter().map(|name| format!("-Wl,-u,{name}")))
-            .arg(input)
-            .arg("-lunwind")
-            .arg(script)
+        BinaryFormat::MachO => {
+            let list: String = names.iter().map(|name| format!("_{name}\n")).collect();
+            linker.arg("-exported_symbols_list");
+            linker.arg(beside("exports", list.as_bytes())?);
+            linker.args(["-arch", "x86_64", "-Wl,-dead_strip", "-Wl,-x"]);
+        }
+        _ => {
+            let mut script = OsString::from("-Wl,--version-script=");
+            script.push(beside("exports", version_script(names).as_bytes())?);
             // A missing name is for the inspection to report, with the others.
-            .args(["-Wl,--undefined-version", "-Wl,--gc-sections"])
-            .args(["-Wl,-z,defs", "-Wl,--build-id=none"])
-            .output()
-            .context("cannot start zig")?;
-        ensure!(
-            linked.status.success(),
-            "`{} cc` could not link {}:\n{}",
-            self.zig.join(" "),
-            output.display(),
-            said(&linked)
-        );
-        Ok(())
+            linker
+                .arg(script)
+                .args(["-Wl,--undefined-version", "-Wl,-z,defs"]);
+            linker.args(["-s", "-Wl,--gc-sections", "-Wl,--build-id=none"]);
+            // Nothing refers to the exported functions; this takes them out of the archive.
+            linker.args(names.iter().map(|name| format!("-Wl,-u,{name}")));
+        }
     }
-
-    fn command(&self) -> Command {
-        let mut command = Command::new(&self.zig[0]);
-        command.args(&self.zig[1..]);
-        command
-    }
+    let archive = beside("a", &archive)?;
+    let linked = linker
+        .arg(stand_ins)
+        .arg(&archive)
+        .args(platform.linked.iter().map(|name| format!("-l{name}")))
+        .output()
+        .context("cannot start the linker")?;
+    fs::remove_file(&archive).context("cannot remove the static library")?;
+    ensure!(
+        linked.status.success(),
+        "the linker could not make {}:\n{}",
+        output.display(),
+        said(&linked)
+    );
+    Ok(())
 }
 
 /// The linker's version script: the names are global, all else is local.
@@ -150,30 +150,48 @@ fn version_script(names: &[&str]) -> String {
     format!("{{ global:{global} local: *; }};\n")
 }
 
-/// What a command said on standard error.
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr)
-        .trim_end()
-        .to_owned()
+/// Windows' module definition: the names to export.
+fn definitions(names: &[&str]) -> String {
+    let exports: String = names.iter().map(|name| format!("    {name}\n")).collect();
+    format!("EXPORTS\n{exports}")
 }
 
 /// The package that the FMU is made from, at the root of the workspace.
-fn root_package(project: &Metadata) -> Result<&Package> {
+pub fn root_package(project: &Metadata) -> Result<&Package> {
     project
         .root_package()
         .context("the workspace has no package at its root")
 }
 
-/// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary:
-/// those of the workspace, the build folder, the dependencies and the standard library.
-fn remappings(project: &Metadata, platform: &Platform) -> Result<String> {
-    // Dependencies count, hence not the metadata at hand.
-    let resolved = MetadataCommand::new()
-        .manifest_path(project.workspace_root.join("Cargo.toml"))
-        .other_options(["--locked", "--filter-platform", platform.triple].map(String::from))
-        .exec()
-        .context("cannot resolve the dependencies")?;
-    let mut replaced: Vec<(String, String)> = resolved
+/// What the build scripts of dependencies need to handle C for the platform: programs and headers.
+fn c_environment(
+    zig: &Zig,
+    platform: &Platform,
+    stand: &Stand,
+    folder: &Path,
+) -> Result<Vec<(String, OsString)>> {
+    let mut headers = OsString::from("-nostdinc");
+    for folder in zig.headers(platform, folder)? {
+        headers.push(" -isystem ");
+        headers.push(folder);
+    }
+    let triple = platform.triple.replace('-', "_");
+    let usual = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(stand.path.clone()).chain(env::split_paths(&usual));
+    Ok(vec![
+        ("PATH".to_owned(), env::join_paths(folders)?),
+        (format!("CC_{triple}"), (&stand.cc).into()),
+        (format!("AR_{triple}"), (&stand.ar).into()),
+        // zig has the target from its own command line and knows it by another name.
+        ("CRATE_CC_NO_DEFAULTS".to_owned(), "1".into()),
+        (format!("BINDGEN_EXTRA_CLANG_ARGS_{triple}"), headers),
+    ])
+}
+
+/// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary: those of the
+/// workspace, the build folder, the dependencies and the standard library.
+fn flags(project: &Metadata, toolchain: &Toolchain, platform: &Platform) -> Result<String> {
+    let mut replaced: Vec<(String, String)> = resolve(project, platform)?
         .packages
         .iter()
         .filter(|package| package.source.is_some())
@@ -186,15 +204,14 @@ fn remappings(project: &Metadata, platform: &Platform) -> Result<String> {
     replaced.push((project.workspace_root.to_string(), ".".to_owned()));
     replaced.push((project.target_directory.to_string(), "target".to_owned()));
     // Without sources at hand the compiler itself names the standard library's files this way.
-    let rustc = program("RUSTC", "rustc");
-    let sysroot = answer(&rustc, &["--print", "sysroot"])?;
-    let verbose = answer(&rustc, &["--version", "--verbose"])?;
+    let sysroot = toolchain.sysroot()?;
+    let verbose = toolchain.answer(&["--version", "--verbose"])?;
     let commit = verbose
         .lines()
         .find_map(|line| line.strip_prefix("commit-hash: "))
         .unwrap_or("unknown");
     replaced.push((
-        format!("{}/lib/rustlib/src/rust", sysroot.trim_end()),
+        format!("{}/lib/rustlib/src/rust", sysroot.display()),
         format!("/rustc/{commit}"),
     ));
     let flags: Vec<String> = replaced
@@ -204,18 +221,14 @@ fn remappings(project: &Metadata, platform: &Platform) -> Result<String> {
     Ok(flags.join("\x1f"))
 }
 
-/// The program that an environment variable names, or the usual one.
-fn program(variable: &str, usual: &str) -> OsString {
-    env::var_os(variable).unwrap_or_else(|| usual.into())
-}
-
-/// What a program says on standard output.
-fn answer(program: &OsStr, arguments: &[&str]) -> Result<String> {
-    let name = program.display();
-    let output = Command::new(program)
-        .args(arguments)
-        .output()
-        .with_context(|| format!("cannot start {name}"))?;
-    ensure!(output.status.success(), "{name} failed: {}", said(&output));
-    String::from_utf8(output.stdout).with_context(|| format!("{name} answered no text"))
+/// The workspace with its dependencies for the platform.
+///
+/// # Errors
+/// If cargo cannot resolve them.
+pub fn resolve(project: &Metadata, platform: &Platform) -> Result<Metadata> {
+    MetadataCommand::new()
+        .manifest_path(project.workspace_root.join("Cargo.toml"))
+        .other_options(["--locked", "--filter-platform", platform.triple].map(String::from))
+        .exec()
+        .context("cannot resolve the dependencies")
 }

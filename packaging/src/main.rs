@@ -2,9 +2,16 @@
 //! FMU; `cargo fmu describe`: writes the checked-in `modelDescription.xml`.
 
 mod archive;
+mod debian;
+mod guide;
+mod icon;
 mod inspect;
 mod library;
+mod licences;
 mod platform;
+mod quiet;
+mod toolchain;
+mod zig;
 
 use std::fs;
 use std::path::Path;
@@ -17,25 +24,14 @@ use dielectric_elastomer_actuator::abi::EXPORTED_NAMES;
 use dielectric_elastomer_actuator::description::{self, MODEL_IDENTIFIER};
 
 use archive::Entries;
+use debian::Unpacked;
 use inspect::Binary;
-use library::Linker;
 use platform::{PLATFORMS, Platform};
+use toolchain::Toolchain;
+use zig::Zig;
 
 /// The checked-in description, relative to the workspace.
 const DESCRIPTION: &str = "modelDescription/modelDescription.xml";
-
-/// Files that are packed as they are: path in the FMU, path in the workspace.
-const ATTACHMENTS: &[(&str, &str)] = &[
-    (
-        "documentation/index.html",
-        "packaging/documentation/index.html",
-    ),
-    (
-        "documentation/licenses/LICENSE-APACHE.txt",
-        "LICENSE-APACHE",
-    ),
-    ("documentation/licenses/LICENSE-MIT.txt", "LICENSE-MIT"),
-];
 
 /// Build, check and pack the FMU
 #[derive(Parser)]
@@ -44,6 +40,9 @@ struct Arguments {
     /// What to do; `pack` if nothing is said
     #[command(subcommand)]
     verb: Option<Verb>,
+    /// Pack for every platform that can be built for here, not for 64-bit Linux only
+    #[arg(long)]
+    all: bool,
 }
 
 #[derive(Subcommand)]
@@ -56,13 +55,23 @@ enum Verb {
         #[arg(long)]
         check: bool,
     },
+    /// Write the user's guide to target/guide
+    Guide,
+    /// Unpack packages of Debian into target/debian and print the folder
+    Unpack {
+        /// Names of packages; the first names the folder
+        #[arg(required = true)]
+        packages: Vec<String>,
+    },
 }
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match arguments.verb.unwrap_or(Verb::Pack) {
-        Verb::Pack => pack(),
+        Verb::Pack => pack(arguments.all),
         Verb::Describe { check } => describe(check),
+        Verb::Guide => write_guide(),
+        Verb::Unpack { packages } => unpack(&packages),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -73,45 +82,111 @@ fn main() -> ExitCode {
     }
 }
 
-/// Packs the FMU of every platform and prints what was packed.
-fn pack() -> Result<()> {
+/// Packs the FMU, of one platform or of every one that can be built for, and prints what was packed.
+fn pack(all: bool) -> Result<()> {
     let project = project()?;
     // Known to be there before the long compilation.
-    let linker = Linker::find()?;
+    let zig = Zig::find()?;
     let folder = project.workspace_root.join("target/fmu");
+    let count = if all { PLATFORMS.len() } else { 1 };
+    let (built, missing) = toolchains(&project, &PLATFORMS[..count])?;
     let mut entries = Entries::new();
     entries.insert("modelDescription.xml".into(), description::xml().into());
-    for (name, source) in ATTACHMENTS {
-        let source = project.workspace_root.join(source);
-        let bytes = fs::read(&source).with_context(|| format!("cannot read {source}"))?;
-        entries.insert((*name).into(), bytes);
-    }
+    entries.insert("model.png".into(), icon::png()?);
+    let guide = guide::html(project.workspace_root.as_std_path())?;
+    entries.insert("documentation/index.html".into(), guide.into());
+    let platforms: Vec<&Platform> = built.iter().map(|(platform, _)| *platform).collect();
+    licences::add(&mut entries, &project, &built[0].1, &zig, &platforms)?;
     let mut report = String::new();
-    for platform in PLATFORMS {
+    for (platform, toolchain) in &built {
         let file = format!("{MODEL_IDENTIFIER}.{}", platform.extension);
-        let shared = folder.join(platform.folder).join(&file);
-        let bytes = build(&project, &linker, platform, shared.as_std_path())?;
-        report += &check(&bytes, platform).with_context(|| format!("{shared} is refused"))?;
+        let place = folder.join(platform.folder);
+        let bytes = build(
+            &project,
+            toolchain,
+            &zig,
+            platform,
+            place.as_std_path(),
+            &file,
+        )?;
+        report += &check(&bytes, platform).with_context(|| format!("{place}/{file} is refused"))?;
         entries.insert(format!("binaries/{}/{file}", platform.folder), bytes);
     }
     let path = folder.join(format!("{MODEL_IDENTIFIER}.fmu"));
     archive::write(path.as_std_path(), &entries)?;
     let size = fs::metadata(&path).map_or(0, |metadata| metadata.len());
     println!("{path}: {}, {} files", kibibytes(size), entries.len());
-    print!("{report}");
+    print!("{report}{missing}");
     Ok(())
 }
 
-/// Builds the shared library of a platform and returns its bytes.
+/// The platforms that can be built for, each with its compiler, and a line on each of the others.
+fn toolchains<'a>(
+    project: &Metadata,
+    platforms: &'a [Platform],
+) -> Result<(Vec<(&'a Platform, Toolchain)>, String)> {
+    let version = library::root_package(project)?
+        .rust_version
+        .as_ref()
+        .context("Cargo.toml states no rust-version")?
+        .to_string();
+    let shelf = toolchain::shelf(project.target_directory.as_std_path());
+    let mut built = Vec::new();
+    let mut missing = String::new();
+    for platform in platforms {
+        match Toolchain::find(platform, &version, &shelf) {
+            Ok(toolchain) => built.push((platform, toolchain)),
+            Err(error) => missing += &format!("  {}: not packed. {error:#}\n", platform.folder),
+        }
+    }
+    ensure!(
+        !built.is_empty(),
+        "there is no platform to build for:\n{missing}"
+    );
+    Ok((built, missing))
+}
+
+/// Builds the shared library `file` of a platform in `folder` and returns its bytes.
 fn build(
     project: &Metadata,
-    linker: &Linker,
+    toolchain: &Toolchain,
+    zig: &Zig,
     platform: &Platform,
-    shared: &Path,
+    folder: &Path,
+    file: &str,
 ) -> Result<Vec<u8>> {
-    let archive = library::compile(project, platform)?;
-    linker.link(archive.as_std_path(), shared, platform, EXPORTED_NAMES)?;
-    fs::read(shared).with_context(|| format!("cannot read {}", shared.display()))
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let shared = folder.join(file);
+    let archive = library::compile(project, toolchain, zig, platform, &folder.join("zig"))?;
+    library::link(
+        zig,
+        archive.as_std_path(),
+        &shared,
+        platform,
+        EXPORTED_NAMES,
+    )?;
+    fs::read(&shared).with_context(|| format!("cannot read {}", shared.display()))
+}
+
+/// Writes the user's guide.
+fn write_guide() -> Result<()> {
+    let project = project()?;
+    let path = project.target_directory.join("guide/index.html");
+    let text = guide::html(project.workspace_root.as_std_path())?;
+    fs::create_dir_all(project.target_directory.join("guide"))?;
+    fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
+    println!("{path}");
+    Ok(())
+}
+
+/// Unpacks Debian's packages and prints where.
+fn unpack(packages: &[String]) -> Result<()> {
+    let project = project()?;
+    let shelf = toolchain::shelf(project.target_directory.as_std_path());
+    let names: Vec<&str> = packages.iter().map(String::as_str).collect();
+    let unpacked = Unpacked::get(&names, &shelf)?;
+    println!("{}", unpacked.root().display());
+    Ok(())
 }
 
 /// The report on a shared library, a line each; an error with every fault if it has one.
@@ -124,7 +199,7 @@ fn check(bytes: &[u8], platform: &Platform) -> Result<String> {
         .map_or_else(|| "none".to_owned(), |version| version.to_string());
     let libraries: Vec<&str> = binary.libraries.iter().map(String::as_str).collect();
     Ok(format!(
-        "  {}: {}, {} names exported, newest glibc needed {glibc}, libraries needed {}\n",
+        "  {}: {}, {} names exported, newest glibc needed: {glibc}, libraries needed: {}\n",
         platform.folder,
         kibibytes(binary.size as u64),
         binary.exported.len(),

@@ -1,0 +1,172 @@
+//! The licences of what is linked into the binaries: our own, those of the crates, of Rust's standard
+//! library and of the libraries that the linker adds.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use cargo_metadata::{DependencyKind, Metadata, Package, PackageId};
+use object::BinaryFormat;
+
+use crate::archive::Entries;
+use crate::library;
+use crate::platform::Platform;
+use crate::toolchain::Toolchain;
+use crate::zig::Zig;
+
+/// Folder in the FMU.
+const FOLDER: &str = "documentation/licenses";
+
+/// Beginnings, in upper case, of the names of files that hold a licence.
+const NAMES: &[&str] = &[
+    "LICENSE",
+    "LICENCE",
+    "COPYING",
+    "COPYRIGHT",
+    "NOTICE",
+    "UNLICENSE",
+];
+
+/// Adds the licences to the FMU.
+///
+/// # Errors
+/// If a licence that must be there cannot be read, or a crate names none.
+pub fn add(
+    entries: &mut Entries,
+    project: &Metadata,
+    toolchain: &Toolchain,
+    zig: &Zig,
+    platforms: &[&Platform],
+) -> Result<()> {
+    let rust = toolchain
+        .sysroot()?
+        .join("share/doc/rust/COPYRIGHT-library.html");
+    let libraries = zig.libraries()?;
+    let mut files = vec![
+        (
+            "LICENSE-APACHE.txt",
+            project.workspace_root.join("LICENSE-APACHE").into(),
+        ),
+        (
+            "LICENSE-MIT.txt",
+            project.workspace_root.join("LICENSE-MIT").into(),
+        ),
+        (
+            "llvm-libunwind.txt",
+            libraries.join("libunwind/LICENSE.TXT"),
+        ),
+        ("rust-standard-library.html", rust),
+    ];
+    if platforms
+        .iter()
+        .any(|platform| platform.format == BinaryFormat::Pe)
+    {
+        files.push(("mingw-w64.txt", libraries.join("libc/mingw/COPYING")));
+    }
+    for (name, path) in files {
+        let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+        entries.insert(format!("{FOLDER}/{name}"), bytes);
+    }
+    entries.insert(
+        format!("{FOLDER}/crates.txt"),
+        crates(project, platforms)?.into(),
+    );
+    Ok(())
+}
+
+/// Every linked crate with its version and licence, then the texts, each once.
+fn crates(project: &Metadata, platforms: &[&Platform]) -> Result<String> {
+    let mut linked = BTreeMap::new();
+    for platform in platforms {
+        let resolved = library::resolve(project, platform)?;
+        for package in linked_packages(&resolved)? {
+            linked.insert(
+                (package.name.to_string(), package.version.clone()),
+                package.clone(),
+            );
+        }
+    }
+    let mut list =
+        String::from("Crates that are linked into the binaries, with their licences.\n\n");
+    let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    for ((name, version), package) in &linked {
+        let terms = package.license.as_deref();
+        let files = licence_files(package)?;
+        ensure!(
+            terms.is_some() || !files.is_empty(),
+            "the crate {name} {version} names no licence"
+        );
+        list += &format!("{name} {version}: {}\n", terms.unwrap_or("see below"));
+        for file in files {
+            let text = fs::read_to_string(&file)
+                .with_context(|| format!("cannot read {}", file.display()))?;
+            let text = text.replace("\r\n", "\n").trim().to_owned();
+            texts
+                .entry(text)
+                .or_default()
+                .push(format!("{name} {version}"));
+        }
+    }
+    for (text, names) in texts {
+        let line = "=".repeat(80);
+        list += &format!("\n{line}\n{}\n{line}\n\n{text}\n", names.join(", "));
+    }
+    Ok(list)
+}
+
+/// The packages below the root that are linked: normal dependencies, no compile-time ones.
+fn linked_packages(resolved: &Metadata) -> Result<Vec<&Package>> {
+    let packages: BTreeMap<&PackageId, &Package> = resolved
+        .packages
+        .iter()
+        .map(|package| (&package.id, package))
+        .collect();
+    let graph = resolved
+        .resolve
+        .as_ref()
+        .context("cargo resolved nothing")?;
+    let root = library::root_package(resolved)?;
+    let mut seen = BTreeSet::new();
+    let mut ahead = vec![&root.id];
+    while let Some(id) = ahead.pop() {
+        let compile_time = packages[id]
+            .targets
+            .iter()
+            .any(|target| target.is_proc_macro());
+        if compile_time || !seen.insert(id) {
+            continue;
+        }
+        let node = graph.nodes.iter().find(|node| &node.id == id);
+        for dependency in node.into_iter().flat_map(|node| &node.deps) {
+            let normal = |kind: &cargo_metadata::DepKindInfo| kind.kind == DependencyKind::Normal;
+            if dependency.dep_kinds.iter().any(normal) {
+                ahead.push(&dependency.pkg);
+            }
+        }
+    }
+    seen.remove(&root.id);
+    Ok(seen.into_iter().map(|id| packages[id]).collect())
+}
+
+/// The files of a crate that hold a licence, by name.
+fn licence_files(package: &Package) -> Result<Vec<PathBuf>> {
+    let folder = package
+        .manifest_path
+        .parent()
+        .context("a package has a folder")?;
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).with_context(|| format!("cannot list {folder}"))? {
+        let path = entry?.path();
+        let name = path
+            .file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .to_uppercase();
+        if path.is_file() && NAMES.iter().any(|start| name.starts_with(start)) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}

@@ -1,0 +1,104 @@
+"""What is in the packed FMU beside the description: binaries, documentation, icon, licences."""
+
+import html.parser
+import re
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+LARGEST_BINARY = {"linux64": 400_000, "aarch64-linux": 400_000, "win64": 440_000}
+
+
+@pytest.fixture(scope="module")
+def archive(fmu_path):
+    with zipfile.ZipFile(fmu_path) as opened:
+        yield opened
+
+
+@pytest.fixture(scope="module")
+def binaries(archive):
+    names = [name for name in archive.namelist() if name.startswith("binaries/")]
+    assert any(name.startswith("binaries/linux64/") for name in names)
+    return {name: archive.read(name) for name in names}
+
+
+def test_binaries_are_small(binaries):
+    sizes = {name.split("/")[1]: len(data) for name, data in binaries.items()}
+    assert {folder: size for folder, size in sizes.items() if size > LARGEST_BINARY[folder]} == {}
+
+
+def test_binaries_hold_no_path_of_the_build_machine(binaries):
+    """Such a path would make the bytes depend on where they were built."""
+    for name, data in binaries.items():
+        for folder in (REPOSITORY, Path.home() / ".cargo", Path.home() / ".rustup"):
+            assert str(folder).encode() not in data, name
+
+
+def test_the_writer_of_backtraces_is_not_linked(binaries):
+    """Neither its heading nor its reader of debug information: both come with Rust's report of a panic."""
+    data = next(data for name, data in binaries.items() if "linux64" in name)
+    assert b"stack backtrace" not in data
+    assert b".debug_info" not in data
+
+
+class References(html.parser.HTMLParser):
+    """Collects the places of a page, where its links lead, and what it would load."""
+
+    def __init__(self):
+        super().__init__()
+        self.places, self.links, self.loaded, self.formulas = set(), set(), [], 0
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.places.add(attributes.get("id"))
+        self.formulas += tag == "math"
+        if tag == "a":
+            self.links.add(attributes["href"])
+        elif "src" in attributes or "href" in attributes:
+            self.loaded.append(attributes.get("src") or attributes.get("href"))
+
+
+def test_documentation_stands_alone(archive, description):
+    text = archive.read("documentation/index.html").decode()
+    page = References()
+    page.feed(text)
+    assert page.formulas > 10
+    assert page.loaded and all(source.startswith("data:image/") for source in page.loaded)
+    inside = {link[1:] for link in page.links if link.startswith("#")}
+    assert inside <= page.places
+    assert all(link.startswith(("#", "https://")) for link in page.links)
+    for variable in description.modelVariables:
+        assert f"<code>{variable.name}</code>" in text
+
+
+def test_every_page_of_the_guide_is_in_the_documentation(archive):
+    text = archive.read("documentation/index.html").decode()
+    pages = sorted((REPOSITORY / "docs" / "guide").glob("*.md"))
+    assert pages
+    places = [text.index(f'<h1 id="{page.stem}">') for page in pages]
+    assert places == sorted(places)
+
+
+def test_icon_is_a_square_png(archive):
+    icon = archive.read("model.png")
+    assert icon.startswith(b"\x89PNG\r\n\x1a\n")
+    assert icon[16:20] == icon[20:24]
+
+
+def test_licence_of_every_linked_crate_is_there(archive):
+    """Cargo's own list of what is linked for 64-bit Linux, by another route than the packager's."""
+    printed = subprocess.run(
+        ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]
+        + ["--target", "x86_64-unknown-linux-gnu", "--package", "dielectric-elastomer-actuator"],
+        cwd=REPOSITORY, capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    linked = set(re.findall(r"^(\S+) v(\S+)$", printed, flags=re.MULTILINE))
+    assert ("fmi", "0.8.0") in linked
+    text = archive.read("documentation/licenses/crates.txt").decode()
+    assert {crate for crate in linked if f"\n{crate[0]} {crate[1]}: " not in text} == set()
+    for name in ("LICENSE-APACHE.txt", "LICENSE-MIT.txt", "llvm-libunwind.txt"):
+        assert archive.read(f"documentation/licenses/{name}")
+    assert "Rust Standard Library" in archive.read("documentation/licenses/rust-standard-library.html").decode()
