@@ -224,9 +224,9 @@ impl Round {
                     round.lowest = lowest.store();
                     round.contraction = contraction.store();
                     round.excess = excess.store();
-                    for k in 0..PAIRS {
-                        round.rates[PAIRS + k] = new[k][0].1.store();
-                        round.rates[PAIRS - 1 - k] = new[k][1].1.store();
+                    for (k, [right, left]) in new.into_iter().enumerate() {
+                        round.rates[PAIRS + k] = right.1.store();
+                        round.rates[PAIRS - 1 - k] = left.1.store();
                         let (mut even, mut odd) = (zero, zero);
                         for j in 0..PAIRS {
                             even = sums[j].mul_add(fill(tables.series_from_sums[j][k]), even);
