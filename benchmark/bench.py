@@ -19,6 +19,9 @@ import records
 from cases import CASES, ROOT
 from programs import C_FLAGS, Missing, cvode, rust
 
+SKIPS_CASE = "d"
+"""The actuator on which it is shown what skipping gains."""
+
 FIGURES = ROOT / "docs" / "figures"
 
 
@@ -99,9 +102,9 @@ def settings(options, rivals: Rivals) -> dict[str, str]:
     }
 
 
-def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict]]:
-    """Raw rows of both patterns."""
-    free, steps = [], []
+def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]]:
+    """Raw rows: free-running, in communication steps, and with something skipped or not."""
+    free, steps, skips = [], [], []
     cases = [case for case in CASES if case.name in options.cases]
     for number in range(1, options.rounds + 1):
         for case in cases:
@@ -110,7 +113,10 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict]]:
             free += [{**about, **row} for row in rivals.free(case, options, number)]
             if case.stepped:
                 steps += [{**about, **row} for row in rivals.steps(case, options)]
-    return free, steps
+            if case.name == SKIPS_CASE:
+                rows = rivals.programs[0].rows("skips", case, options.milliseconds)
+                skips += [{**about, **row} for row in rows]
+    return free, steps, skips
 
 
 def main() -> None:
@@ -120,7 +126,7 @@ def main() -> None:
         for name, reason in rivals.missing.items():
             print(f"missing: {name}: {reason}")
         facts = records.machine()
-        free, steps = measure(options, rivals)
+        free, steps, skips = measure(options, rivals)
     facts |= settings(options, rivals)
 
     target = records.folder(facts, options.records)
@@ -136,6 +142,11 @@ def main() -> None:
         written.append(records.write(target / "co_simulation.csv", facts, best_steps))
         written.append(plots.co_simulation(best_steps, options.figures / "benchmark_co_simulation.png"))
         text += "\n" + ratios.step_table(best_steps)
+    if skips:
+        best_skips = records.medians(skips)
+        written.append(records.write(target / "skips_raw.csv", facts, skips))
+        written.append(records.write(target / "skips.csv", facts, best_skips))
+        text += "\n" + ratios.skip_table(best_skips)
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")

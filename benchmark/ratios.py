@@ -91,6 +91,17 @@ def step_table(rows: list[dict]) -> str:
     return "Nanoseconds for each call, with the error in brackets.\n\n" + "\n\n".join(blocks) + "\n"
 
 
+def skip_table(rows: list[dict]) -> str:
+    """Markdown: what is skipped, nanoseconds with and without, and how much the result differs."""
+    lines = ["| skipped | ns | not skipped, ns | gain | difference |", "|---|---|---|---|---|"]
+    for name in methods(rows):
+        pair = {row["inputs"]: row for row in rows if row["method"] == name}
+        fast, slow = (float(pair[kind]["nanoseconds"]) for kind in ("skipped", "not skipped"))
+        difference = float(pair["skipped"]["error"])
+        lines.append(f"| {name} | {fast:.3g} | {slow:.3g} | {slow / fast:.2g}× | {difference:.0e} |")
+    return "For each unit of time, call or scene.\n\n" + "\n".join(lines) + "\n"
+
+
 def _cell(row: dict | None) -> str:
     if row is None or row["nanoseconds"] in ("", None):
         return "–"

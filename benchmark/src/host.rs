@@ -148,6 +148,28 @@ impl Host {
         value
     }
 
+    /// Any Real variables.
+    #[inline]
+    pub fn read(&self, references: &[u32], values: &mut [f64]) {
+        assert!(references.len() <= values.len());
+        // SAFETY: a live component, and room for the values.
+        unsafe {
+            (self.get_real)(
+                self.component,
+                references.as_ptr(),
+                references.len(),
+                values.as_mut_ptr(),
+            )
+        };
+    }
+
+    /// Switches the log on.
+    pub fn log(&self) {
+        // SAFETY: a live component.
+        let status = unsafe { abi::fmi2SetDebugLogging(self.component, 1, 0, null()) };
+        assert!(status == fmi2Status_fmi2OK);
+    }
+
     /// λ and dλ/dt.
     pub fn state(&self) -> [f64; 2] {
         let mut values = [0.0; 2];

@@ -2,7 +2,7 @@
 //! of CSV. `benchmark/bench.py` calls it in turns with the other rivals.
 //!
 //! ```text
-//! benchmark free|steps milliseconds=10 c=100 gamma_s=… reference=case_a.csv
+//! benchmark free|steps|skips milliseconds=10 c=100 gamma_s=… reference=case_a.csv
 //! ```
 
 mod case;
@@ -12,6 +12,7 @@ mod host;
 mod ours;
 mod rivals;
 mod row;
+mod skips;
 mod steps;
 mod timing;
 
@@ -33,6 +34,7 @@ fn main() {
     match pattern.as_str() {
         "free" => free::run(&case, least),
         "steps" => steps::run(&case, least),
-        _ => panic!("the first argument is free or steps"),
+        "skips" => skips::run(&case, least),
+        _ => panic!("the first argument is free, steps or skips"),
     }
 }

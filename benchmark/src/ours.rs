@@ -28,6 +28,11 @@ pub const METHODS: &[Method] = &[
     method("ours without orbit reuse", |case, tolerance, states| {
         follow(case, start(tolerance).without_orbits(), states)
     }),
+    #[cfg(target_arch = "x86_64")]
+    method("ours AVX2", |case, tolerance, states| {
+        let avx2 = Level::new().as_avx2().ok_or("no AVX2 here")?;
+        follow(case, start(tolerance).with_level(Level::Avx2(avx2)), states)
+    }),
     method("ours baseline SIMD", |case, tolerance, states| {
         follow(case, start(tolerance).with_level(Level::baseline()), states)
     }),
@@ -40,7 +45,7 @@ pub const METHODS: &[Method] = &[
     ),
 ];
 
-fn start(tolerance: f64) -> Trajectory {
+pub fn start(tolerance: f64) -> Trajectory {
     let rest = State {
         position: 1.0,
         rate: 0.0,
@@ -52,7 +57,7 @@ fn start(tolerance: f64) -> Trajectory {
     Trajectory::new(rest, Double::ZERO, limits, tolerance)
 }
 
-fn motion(case: &Case) -> Motion {
+pub fn motion(case: &Case) -> Motion {
     let [surface_energy, surface_tension, surface_elasticity] = case.surface;
     let mut drive = Drive::constant(case.voltage, case.prestress);
     drive.harmonic = Harmonic {

@@ -25,6 +25,9 @@ const CHANGES: [(&str, usize); 3] = [("held", 0), ("linear", 1), ("cubic", 3)];
 /// each step make each step a start of its own, whose errors add up.
 const ALLOWED: f64 = 1e3;
 
+/// Inputs unchanged, and nothing read after the step.
+const STEP_ALONE: &str = "unchanged; nothing read";
+
 /// A run in communication steps to a time of the reference.
 struct Plan<'a> {
     case: &'a Case,
@@ -128,17 +131,24 @@ fn euler(plan: &Plan, least: Duration) {
             black_box(oscillator.get());
         }
     });
-    Row {
-        method: "forward Euler step 0.01 (van der Pol)",
-        tolerance: 0.01,
-        step: Some(plan.step),
-        inputs: "unchanged",
-        nanoseconds,
-        error: None,
-        hold_error: None,
-        note: "another equation; time only".into(),
+    let alone = self::nanoseconds(least, plan.calls, VanDerPol::new, |oscillator| {
+        for call in 0..plan.calls {
+            black_box(&mut *oscillator).step((call + 1) as f64 * plan.step);
+        }
+    });
+    for (inputs, nanoseconds) in [("unchanged", nanoseconds), (STEP_ALONE, alone)] {
+        Row {
+            method: "forward Euler step 0.01 (van der Pol)",
+            tolerance: 0.01,
+            step: Some(plan.step),
+            inputs,
+            nanoseconds,
+            error: None,
+            hold_error: None,
+            note: "another equation; time only".into(),
+        }
+        .print();
     }
-    .print();
 }
 
 fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
@@ -175,7 +185,21 @@ fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
         );
     } else {
         row.note = "not timed: error above 10 tolerances".into();
+        row.print();
+        return;
     }
+    row.print();
+    row.inputs = STEP_ALONE;
+    row.nanoseconds = nanoseconds(
+        least,
+        plan.calls,
+        || Host::new(case, tolerance, true),
+        |host| {
+            for call in 0..plan.calls {
+                host.step(call as f64 * step, step);
+            }
+        },
+    );
     row.print();
 }
 

@@ -27,6 +27,9 @@ const SHORTEST: f64 = 1e-12;
 impl Trajectory {
     /// Whether nothing is asked of the motion for the time `rest` but its end.
     pub(super) fn strides_over<E: Equation>(&self, equation: &E, rest: f64) -> bool {
+        if !self.takes_strides {
+            return false;
+        }
         if self.restless && self.strides.reach(rest) {
             return true;
         }

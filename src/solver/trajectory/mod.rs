@@ -54,6 +54,8 @@ pub struct Trajectory {
     next_length: Option<f64>,
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
+    /// Whether long ways are strided over.
+    takes_strides: bool,
     /// Advances since the last restart.
     advances: u32,
     /// The last start was good for a single advance: the host changes the
@@ -89,6 +91,7 @@ impl Trajectory {
             at_rest: false,
             next_length: None,
             follows_orbits: true,
+            takes_strides: true,
             advances: 0,
             restless: false,
             strides: Strides::NONE,
@@ -121,6 +124,13 @@ impl Trajectory {
     #[must_use]
     pub fn without_orbits(mut self) -> Trajectory {
         self.follows_orbits = false;
+        self
+    }
+
+    /// The same motion, integrated with 16 nodes all the way.
+    #[must_use]
+    pub fn without_strides(mut self) -> Trajectory {
+        self.takes_strides = false;
         self
     }
 

@@ -91,12 +91,12 @@ impl Trajectory {
 
     /// Moves the present along the orbit by the time `step`.
     pub(super) fn run_orbit(&mut self, orbit: Orbit, step: f64) {
+        let (now, direction) = orbit.run(self.now, self.direction, step);
         if self.extremes.is_some() {
             for turn in orbit.turns_within(self.now, self.direction, step) {
                 self.arrive(turn);
             }
         }
-        let (now, direction) = orbit.run(self.now, self.direction, step);
         self.direction = direction;
         self.arrive(now);
     }
