@@ -42,6 +42,11 @@ class Comparison:
         """Add a row to the last block."""
         self._blocks[-1][1].append(Row(quantity, printed, exact, measured))
 
+    @property
+    def rows(self) -> list[Row]:
+        """All rows, in order."""
+        return [row for _, rows in self._blocks for row in rows]
+
     def text(self) -> str:
         """The table, with the worst difference of each block and a note on misprinted entries."""
         lines = [f"{'':<42} {'paper':>8}  {'exact':>15} {'FMU':>15} {'difference':>11}"]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -63,46 +64,68 @@ def dc_responses(families: dict[str, list[Oscillation]], *, title: str) -> Figur
     return figure
 
 
+BELOW, ABOVE = "-", (0, (3, 1.5))
+"""Line styles of the two sides of a pull-in voltage."""
+
+
 def pull_in_transitions(families: dict[str, list[Transition]], *, distance: float, title: str) -> Figure:
     """Response just below (solid) and just above (dashed) each pull-in voltage, one row a surface parameter.
 
     Crosses in the phase portraits mark the saddle that the two motions pass on different sides, dots the
     collapse where the response above has ended.
     """
-    below, above = "-", (0, (3, 1.5))
     figure, rows = plt.subplots(len(families), 2, figsize=(10.5, 3.4 * len(families)), squeeze=False)
     for letter, (parameter, transitions), (history, portrait) in zip("abc", families.items(), rows):
-        span = transitions[0].below["time"][-1]
-        for index, transition in enumerate(transitions):
-            colour = style.COLOURS[index]
-            for response, line in ((transition.below, below), (transition.above, above)):
-                history.plot(response["time"], response["lambda3"], color=colour, linestyle=line)
-                # at the collapse the actuator is stopped, which would draw a jump of the rate to 0
-                loop = _first_loop(response[~response["pulled_in"]])
-                portrait.plot(loop["lambda3"], loop["lambda3_dot"], color=colour, linestyle=line)
-            end = transition.above[-1]
-            if end["time"] < span:
-                history.plot(end["time"], end["lambda3"], "o", color=colour, markersize=4, clip_on=False)
-            portrait.plot(transition.lambda3_pull_in, 0, "x", color=style.BLACK, markersize=7, zorder=5)
-        style.label(history, "time", "lambda3")
-        style.label(portrait, "lambda3", "lambda3_dot")
-        history.set(xlim=(0, span), ylim=(0, 1.03))
-        portrait.set_xlim(0, 1.03)
+        transition_histories(history, transitions)
+        transition_portraits(portrait, transitions)
         history.set_title(f"({letter})  {style.NAMES[parameter]}", loc="left")
-        voltage, saddle = style.SYMBOLS["phi_pull_in"], f"saddle {style.SYMBOLS['lambda3_pull_in']}"
-        handles = [
-            Line2D([], [], color=style.COLOURS[index], label=style.setting(**{parameter: transition.value}))
-            for index, transition in enumerate(transitions)
-        ]
-        handles += [
-            Line2D([], [], color=style.GREY, linestyle=below, label=f"{voltage} $-$ {distance:g}"),
-            Line2D([], [], color=style.GREY, linestyle=above, label=f"{voltage} + {distance:g}"),
-            Line2D([], [], color=style.GREY, marker="o", markersize=4, linestyle="", label="collapse"),
-            Line2D([], [], color=style.BLACK, marker="x", linestyle="", label=saddle),
-        ]
+        handles = [*transition_handles(parameter, transitions, distance), COLLAPSE, SADDLE]
         portrait.legend(handles=handles, **style.BESIDE)
     figure.suptitle(title)
     return figure
+
+
+def transition_histories(axes: Axes, transitions: list[Transition]) -> None:
+    """Time histories at both sides of each pull-in voltage (the paper's Fig. 6)."""
+    span = transitions[0].below["time"][-1]
+    for colour, transition in zip(style.COLOURS, transitions):
+        for response, line in ((transition.below, BELOW), (transition.above, ABOVE)):
+            axes.plot(response["time"], response["lambda3"], color=colour, linestyle=line)
+        end = transition.above[-1]
+        if end["time"] < span:
+            axes.plot(end["time"], end["lambda3"], "o", color=colour, markersize=4, clip_on=False)
+    style.label(axes, "time", "lambda3")
+    axes.set(xlim=(0, span), ylim=(0, 1.03))
+
+
+def transition_portraits(axes: Axes, transitions: list[Transition]) -> None:
+    """Phase portraits at both sides of each pull-in voltage (the paper's Fig. 7), with the saddles."""
+    for colour, transition in zip(style.COLOURS, transitions):
+        for response, line in ((transition.below, BELOW), (transition.above, ABOVE)):
+            # at the collapse the actuator is stopped, which would draw a jump of the rate to 0
+            loop = _first_loop(response[~response["pulled_in"]])
+            axes.plot(loop["lambda3"], loop["lambda3_dot"], color=colour, linestyle=line)
+        axes.plot(transition.lambda3_pull_in, 0, "x", color=style.BLACK, markersize=7, zorder=5)
+    style.label(axes, "lambda3", "lambda3_dot")
+    axes.set_xlim(0, 1.03)
+
+
+def transition_handles(parameter: str, transitions: list[Transition], distance: float) -> list[Line2D]:
+    """What the colours and lines of the two functions above mean, for a legend."""
+    voltage = style.SYMBOLS["phi_pull_in"]
+    colours = [
+        Line2D([], [], color=colour, label=style.setting(**{parameter: transition.value}))
+        for colour, transition in zip(style.COLOURS, transitions)
+    ]
+    return colours + [
+        Line2D([], [], color=style.GREY, linestyle=BELOW, label=f"{voltage} $-$ {distance:g}"),
+        Line2D([], [], color=style.GREY, linestyle=ABOVE, label=f"{voltage} + {distance:g}"),
+    ]
+
+
+COLLAPSE = Line2D([], [], color=style.GREY, marker="o", markersize=4, linestyle="", label="collapse")
+SADDLE = Line2D([], [], color=style.BLACK, marker="x", linestyle="", label=f"saddle {style.SYMBOLS['lambda3_pull_in']}")
+"""What the marks in the histories and in the phase portraits mean."""
 
 
 def driven_response(response: np.ndarray, section: np.ndarray, *, amplitude: float, title: str) -> Figure:
