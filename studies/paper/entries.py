@@ -82,7 +82,7 @@ def draw_table(header: Sequence[str], rows: Sequence[Sequence[str]], *, title: s
     axes.axis("off")
     axes.set_title(title, loc="left", fontsize=12)
     table = axes.table(
-        cellText=rows,
+        cellText=[[str(cell).replace("-", "\u2212") if cell[:1] in "+-" else cell for cell in row] for row in rows],
         colLabels=header,
         colWidths=[width / sum(widths) for width in widths],
         cellLoc="right",

@@ -48,13 +48,23 @@ class Cases:
 
     def acceleration(self, stretch, rate, voltage_squared):
         """d²λ/dt²."""
-        return (6 * stretch**-7.0 * rate * rate + self.force(stretch, voltage_squared)) / self.inertia(stretch)
+        sixth = stretch**-6.0
+        return (6 * sixth / stretch * rate * rate + self.force(stretch, voltage_squared)) / (self.c + 2 * sixth)
 
-    def jacobian(self, stretch, rate, voltage_squared, acceleration):
-        """∂(d²λ/dt²)/∂λ and ∂(d²λ/dt²)/∂(dλ/dt)."""
-        inertia, power = self.inertia(stretch), stretch**-7.0
-        by_stretch = -42 * power / stretch * rate * rate - self.stiffness(stretch, voltage_squared)
-        return (by_stretch + 12 * power * acceleration) / inertia, 12 * power * rate / inertia
+    def linearised(self, stretch, rate, voltage_squared):
+        """d²λ/dt² and its derivatives with respect to λ and dλ/dt, with the powers shared."""
+        square, inverse = stretch * stretch, 1 / stretch
+        sixth = (inverse * inverse) ** 3
+        seventh = sixth * inverse
+        inertia = self.c + 2 * sixth
+        twice_rate = 6 * seventh * rate
+        surface = self.gamma_s + self.tau_s * (2 * square - 1) + self.E_s / 2 * (square - 1) * (3 * square - 1)
+        force = self.S + stretch * (voltage_squared * square - 1 + sixth - 2 * surface)
+        acceleration = (twice_rate * rate + force) / inertia
+        bend = self.gamma_s + self.tau_s * (6 * square - 1) + self.E_s / 2 * ((15 * square - 12) * square + 1)
+        stiffness = 1 + 5 * sixth + 2 * bend - 3 * voltage_squared * square
+        by_stretch = (12 * seventh * acceleration - 7 * inverse * twice_rate * rate - stiffness) / inertia
+        return acceleration, by_stretch, 2 * twice_rate / inertia
 
     def resistance(self, stretch):
         """What the springs and the prestress hold in Eq. 19, all terms without φ, divided by λ − 1.
