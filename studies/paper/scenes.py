@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 from references import SurfaceEffects
 
 SURFACE_PARAMETERS = ("gamma_s", "tau_s", "E_s")
@@ -59,3 +62,41 @@ def printed_resonances() -> dict[tuple[SurfaceEffects, str], str]:
                 case = varied(parameter, value, PRESTRESSES[position % 2])
                 found[case, BRANCHES[position // 2]] = entry
     return found
+
+
+EXTREME = {"gamma_s": 0.1, "tau_s": 0.1, "E_s": 0.4}
+"""The three cases of Figs. 9 to 12 and B.1 to B.4: one surface parameter at its largest value."""
+NEAR_RESONANT = "near-resonant"
+DETUNING = 0.95
+"""ω over the printed harmonic resonance in Figs. 12 and B.4. Our choice: the paper does not give the frequency."""
+
+
+@dataclass(frozen=True)
+class DrivenRun:
+    """One run from rest under φ_a = `PHI_AC`; `regime` is a branch or near-resonant."""
+
+    case: SurfaceEffects
+    regime: str
+    omega: float
+
+    def scene(self) -> dict[str, float]:
+        return self.case.scene(phi_ac=PHI_AC, omega_ac=self.omega)
+
+    @property
+    def forcing_period(self) -> float:
+        """π/ω: the voltage enters as φ²."""
+        return math.pi / self.omega
+
+
+def shown_run(parameter: str, regime: str, prestress: float) -> DrivenRun:
+    """The run of Figs. 9 to 12, B.1 to B.4 for one case, at the frequency printed in Tables 2 to 4."""
+    case = varied(parameter, EXTREME[parameter], prestress)
+    if regime == NEAR_RESONANT:
+        return DrivenRun(case, regime, DETUNING * float(printed_resonances()[case, "harmonic"]))
+    return DrivenRun(case, regime, float(printed_resonances()[case, regime]))
+
+
+def driven_runs() -> list[DrivenRun]:
+    """The 42 runs at the frequencies printed in Tables 2 to 4, and the six near resonance."""
+    printed = [DrivenRun(case, branch, float(omega)) for (case, branch), omega in printed_resonances().items()]
+    return printed + [shown_run(parameter, NEAR_RESONANT, S) for S in PRESTRESSES for parameter in EXTREME]

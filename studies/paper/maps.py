@@ -1,0 +1,325 @@
+"""Beyond the paper: pull-in over voltage and prestress, thresholds over the surface parameters, the period at
+pull-in, and escape under the harmonic drive."""
+
+from __future__ import annotations
+
+import figure_style as style
+import matplotlib.pyplot as plt
+import numpy as np
+import references
+import turning_points
+from actuator_fmu import ActuatorFmu
+from comparison import Row
+from matplotlib.colors import LogNorm
+from references import SurfaceEffects
+
+from paper import equation
+from paper.entries import Entry, Grid, stack
+from paper.workers import Workers
+
+TOLERANCE = 1e-9
+CMAP = "cividis"
+"""The same to readers with and without colour blindness, and even in grey."""
+NO_MAP = "#e9e4dc"
+"""Where a map has no value."""
+
+PULL_IN_SPAN = 400.0
+"""A dozen natural periods; only within about 1e-6 of a threshold is the first turn later."""
+PULL_IN_CASES = (SurfaceEffects(0.0, 0.0, 0.0, 0.0), SurfaceEffects(0.0, 0.0, 0.007, 0.0))
+
+ESCAPE_SPAN = 1000.0
+"""About 40 natural periods."""
+ESCAPE_WINDOWS = (((0.02, 0.35), (0.4, 1.0)), ((0.085, 0.115), (0.45, 0.75)), ((0.093, 0.0985), (0.485, 0.53)))
+"""ω and φ_a of the map and of two zooms into its edge."""
+
+
+def pull_in_row(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, np.ndarray]) -> np.ndarray:
+    """For one prestress and each voltage: smallest λ₃ reached, instant of collapse (+inf: none)."""
+    case, prestress, voltages = item
+    found = np.empty((len(voltages), 2))
+    for row, phi in zip(found, voltages):
+        actuator.start({**case.scene(phi=phi), "S": prestress, "record_extremes": True}, tolerance=TOLERANCE)
+        actuator.advance(PULL_IN_SPAN)
+        row[:] = actuator.get("lambda3_lowest", "pull_in_time")
+    return found
+
+
+def pull_in_map(workers: Workers, cells: int) -> Entry:
+    """Smallest λ₃ from rest over voltage and prestress, with the thresholds that the FMU reports."""
+    voltages, prestresses = np.linspace(0.0, 1.0, cells), np.linspace(0.0, 1.0, cells * 3 // 4)
+    figure, panels = plt.subplots(1, 2, figsize=(13, 5.2), sharey=True)
+    columns: dict[str, list] = {}
+    wrong = total = 0
+    for axes, case in zip(panels, PULL_IN_CASES):
+        found = np.array(workers.map(pull_in_row, [(case, S, voltages) for S in prestresses]))
+        lowest, collapse = found[..., 0], found[..., 1]
+        collapsed = np.isfinite(collapse)
+        shown = axes.pcolormesh(
+            voltages,
+            prestresses,
+            np.where(collapsed, np.nan, lowest),
+            norm=LogNorm(0.01, 1.0),
+            cmap=CMAP,
+            rasterized=True,
+        )
+        axes.set_facecolor(NO_MAP)
+        curves = {name: [] for name in ("phi_pull_in", "phi_pull_in_static")}
+        for S in prestresses:
+            workers.actuator.start({**case.scene(), "S": S})
+            for name, value in zip(curves, workers.actuator.get(*curves)):
+                curves[name].append(value)
+        dynamic = np.array(curves["phi_pull_in"])[:, np.newaxis]
+        passed = voltages > dynamic
+        if case.E_s == 0:
+            wrong, total = wrong + int((passed != collapsed).sum()), total + passed.size
+        axes.plot(curves["phi_pull_in"], prestresses, color=style.COLOURS[1], linewidth=2, label=style.SYMBOLS["phi_pull_in"])
+        axes.plot(
+            curves["phi_pull_in_static"], prestresses, "--", color=style.BLACK, linewidth=1.3, label="static pull-in"
+        )
+        axes.grid(False)
+        axes.set_title(style.setting(E_s=case.E_s, gamma_s=0, tau_s=0), loc="left")
+        axes.set(xlabel=f"voltage  {style.SYMBOLS['phi']}", xlim=(0, 1))
+        axes.plot([], [], "s", color=NO_MAP, markeredgecolor=style.GREY, markersize=9, label="collapse")
+        axes.legend(loc="upper right")
+        mesh_S, mesh_phi = np.meshgrid(prestresses, voltages, indexing="ij")
+        columns = stack(
+            columns,
+            {
+                "E_s": [case.E_s] * lowest.size,
+                "S": mesh_S.ravel(),
+                "phi": mesh_phi.ravel(),
+                "lambda3_lowest": lowest.ravel(),
+                "pull_in_time": collapse.ravel(),
+            },
+        )
+    panels[0].set_ylabel(f"prestress  {style.SYMBOLS['S']}")
+    figure.colorbar(shown, ax=panels, label=r"smallest $\lambda_3$ reached")
+    figure.suptitle(f"From rest under a constant voltage, t ≤ {PULL_IN_SPAN:g}")
+    return Entry(
+        "map_pull_in",
+        "Pull-in over voltage and prestress",
+        figure,
+        columns,
+        remarks=[
+            f"{2 * voltages.size * prestresses.size} runs, each of one communication step with recorded extremes. Without surface "
+            f"elasticity (left) the motion collapses in the very cells beyond the FMU's phi_pull_in: {total - wrong} of {total} "
+            "agree"
+            + ("." if wrong == 0 else f"; the other {wrong} lie next to the threshold, where the escape takes longer than the run."),
+            "With surface elasticity (right) nothing collapses where the larger orbit stays within lambda_max = 10: past the "
+            "threshold λ₃ jumps to a few hundredths and the motion stays periodic.",
+        ],
+    )
+
+
+def threshold_row(actuator: ActuatorFmu, item: tuple[dict[str, float], str, np.ndarray]) -> np.ndarray:
+    """phi_pull_in for each value of one surface parameter, the others held."""
+    held, parameter, values = item
+    found = np.empty(len(values))
+    for index, value in enumerate(values):
+        actuator.start({**held, parameter: value})
+        found[index] = actuator.get("phi_pull_in")
+    return found
+
+
+def threshold_map(workers: Workers, cells: int) -> Entry:
+    """φᶜ over each pair of surface parameters, with the exact limits E*."""
+    figure, panels = plt.subplots(1, 3, figsize=(15.5, 4.8))
+    columns: dict[str, list] = {}
+    reach = {"gamma_s": 0.1, "tau_s": 0.1, "E_s": 0.06}
+    for letter, axes, (across, up) in zip("abc", panels, (("gamma_s", "tau_s"), ("gamma_s", "E_s"), ("tau_s", "E_s"))):
+        values, heights = np.linspace(0, reach[across], cells), np.linspace(0, reach[up], cells)
+        found = np.array(workers.map(threshold_row, [({up: height}, across, values) for height in heights]))
+        shown = axes.pcolormesh(
+            values, heights, np.where(np.isfinite(found), found, np.nan), vmin=0.6, vmax=0.92, cmap=CMAP, rasterized=True
+        )
+        lines = axes.contour(
+            values, heights, np.where(np.isfinite(found), found, np.nan), np.arange(0.64, 0.92, 0.02), colors="white", linewidths=0.7
+        )
+        axes.clabel(lines, fontsize=8, fmt="%.2f")
+        axes.set_facecolor(NO_MAP)
+        axes.grid(False)
+        if up == "E_s":
+            sign = 1 if across == "gamma_s" else -1
+            for cusp in references.cusps():
+                place = sign * cusp.gamma_s_minus_tau_s
+                if cusp.kind == "dynamic" and cusp.S == 0 and 0 <= place <= reach[across]:
+                    axes.plot(place, cusp.E_s, clip_on=False, **style.EXACT)
+            axes.text(0.5, 0.93, "no pull-in", transform=axes.transAxes, ha="center", va="top", fontsize=10)
+        other = next(name for name in reach if name not in (across, up))
+        axes.set_title(f"({letter})  {style.setting(**{other: 0})}", loc="left")
+        axes.set(xlabel=f"{style.NAMES[across]}  {style.SYMBOLS[across]}", ylabel=f"{style.NAMES[up]}  {style.SYMBOLS[up]}")
+        mesh_up, mesh_across = np.meshgrid(heights, values, indexing="ij")
+        fields = {across: mesh_across.ravel(), up: mesh_up.ravel(), other: np.zeros(found.size)}
+        columns = stack(columns, {**{name: fields[name] for name in reach}, "phi_pull_in": found.ravel()})
+    figure.colorbar(shown, ax=panels, label=style.SYMBOLS["phi_pull_in"])
+    figure.suptitle(r"Dynamic pull-in voltage over the surface parameters, $\bar{S}$ = 0 (dots: exact $E^*$)")
+    return Entry(
+        "map_thresholds",
+        "Pull-in voltage over surface energy, surface tension and surface elasticity",
+        figure,
+        columns,
+        rows=_redundancy(workers.actuator),
+        remarks=[
+            f"{3 * cells * cells} thresholds, from the variable phi_pull_in.",
+            "γ̄ₛ and τ̄ₛ act through their difference but for a shift of the voltage: (γ̄ₛ, τ̄ₛ, φ̄²) moves exactly like (γ̄ₛ − τ̄ₛ, 0, "
+            "φ̄² − 4τ̄ₛ). Hence one map over γ̄ₛ − τ̄ₛ and Ēₛ holds them all, and E* depends on γ̄ₛ − τ̄ₛ alone. The table checks it.",
+        ],
+    )
+
+
+def _redundancy(actuator: ActuatorFmu) -> list[Row]:
+    rows = []
+    for gamma_s, tau_s, E_s in ((0.1, 0.04, 0.0), (0.09, 0.02, 0.02), (0.08, 0.08, 0.025)):
+        found = []
+        for scene in ({"gamma_s": gamma_s, "tau_s": tau_s, "E_s": E_s}, {"gamma_s": gamma_s - tau_s, "E_s": E_s}):
+            actuator.start(scene)
+            found.append(actuator.get("phi_pull_in"))
+        name = f"phi^C, gamma_s = {gamma_s:g}, tau_s = {tau_s:g}, E_s = {E_s:g}"
+        rows.append(Row(name, None, (found[1] ** 2 + 4 * tau_s) ** 0.5, found[0]))
+    return rows
+
+
+PERIOD_CASES = (
+    SurfaceEffects(0.0, 0.0, 0.0, 0.0),
+    SurfaceEffects(0.1, 0.0, 0.0, 0.0),
+    SurfaceEffects(0.0, 0.1, 0.0, 0.0),
+    SurfaceEffects(0.0, 0.0, 0.015, 0.0),
+)
+
+
+def period(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float]) -> float:
+    """Period of the motion from rest at one voltage, from its first half: the motion is symmetric in time."""
+    case, phi = item
+    response = actuator.run(
+        case.scene(phi=phi), stop_time=400.0, communication_step=0.4, outputs=turning_points.OUTPUTS, tolerance=1e-13
+    )
+    times, _ = turning_points.turning_points(response)
+    return 2 * float(times[0])
+
+
+def period_curve(workers: Workers, points: int) -> Entry:
+    """Period over voltage, and its growth like −ln|φᶜ − φ| at pull-in with the rate of the saddle."""
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 4.8))
+    rows, columns = [], {name: [] for name in ("gamma_s", "tau_s", "E_s", "phi", "distance", "period")}
+    for index, case in enumerate(PERIOD_CASES):
+        exact = equation.threshold(case)
+        rest = (2 * (case.gamma_s + case.tau_s)) ** 0.5
+        shares = np.concatenate([np.linspace(0.15, 0.9, points), 1 - np.geomspace(0.1, 1e-3, points)])
+        distances = np.concatenate([exact.phi - (rest + shares * (exact.phi - rest)), np.geomspace(1e-3, 1e-11, points)])
+        voltages = exact.phi - distances
+        distances = exact.phi - voltages  # as a double holds them
+        periods = np.array(workers.map(period, [(case, phi) for phi in voltages]))
+        varied = next((p for p in ("gamma_s", "tau_s", "E_s") if getattr(case, p)), None)
+        name = style.setting(**{varied: getattr(case, varied)}) if varied else "ideal"
+        look = style.curve(index)
+        order = np.argsort(voltages)
+        left.plot(voltages[order], periods[order], label=name, **look)
+        left.axvline(exact.phi, color=look["color"], linewidth=0.8, linestyle=":")
+        right.semilogx(distances, periods, label=name, **look)
+        near = (distances < 1e-5) & (distances > 1e-10)
+        slope = np.polyfit(-np.log(distances[near]), periods[near], 1)[0]
+        expected = 1 / equation.escape_rate(case, exact)
+        rows.append(Row(f"dT/d(-ln(phi^C - phi)), {varied or 'ideal'}", None, expected, float(slope)))
+        for field, values in zip(columns, ([case.gamma_s] * len(periods), [case.tau_s] * len(periods), [case.E_s] * len(periods), voltages, distances, periods)):
+            columns[field].extend(values)
+    left.set(xlabel=f"voltage  {style.SYMBOLS['phi']}", ylabel="period  $T$", ylim=(20, 160))
+    right.set(xlabel=r"distance to pull-in  $\bar{\phi}^C - \bar{\phi}$", ylabel="period  $T$")
+    right.invert_xaxis()
+    left.legend()
+    right.legend()
+    figure.suptitle(r"Period of the motion from rest, $\bar{S}$ = 0")
+    return Entry(
+        "period",
+        "Period over voltage",
+        figure,
+        columns,
+        rows=rows,
+        remarks=[
+            "The period grows without bound at pull-in, as the paper says, but like −ln(φ̄ᶜ − φ̄)/σ with σ the rate of the saddle: the "
+            "mark of a homoclinic orbit. At a saddle-node it would grow like a power of the distance. Exact: 1/σ from Eq. 16 "
+            "linearised at the threshold; FMU: slope fitted for distances of 1e-10 to 1e-5.",
+        ],
+    )
+
+
+def escape_row(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> np.ndarray:
+    """For one φ_a and each ω the instant of escape of the ideal actuator, +inf if not within `ESCAPE_SPAN`."""
+    phi_ac, omegas = item
+    found = np.empty(len(omegas))
+    for index, omega in enumerate(omegas):
+        actuator.start({"phi_ac": phi_ac, "omega_ac": omega}, tolerance=TOLERANCE)
+        actuator.advance(ESCAPE_SPAN)
+        found[index] = actuator.get("pull_in_time")
+    return found
+
+
+def uncertain(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> float:
+    """Share of the places (ω, φ_a) whose fate differs from that of the place `distance` further in φ_a."""
+    distance, places = item
+    differing = 0
+    for omega, phi_ac in places:
+        fates = [np.isfinite(escape_row(actuator, (phi, np.array([omega])))[0]) for phi in (phi_ac, phi_ac + distance)]
+        differing += fates[0] != fates[1]
+    return differing / len(places)
+
+
+def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
+    """Escape of the ideal actuator under the harmonic drive, and how its edge scales."""
+    figure, panels = plt.subplots(1, 4, figsize=(18, 4.9), width_ratios=(1.25, 1, 1, 0.95))
+    columns: dict[str, list] = {}
+    for letter, axes, ((left, right), (bottom, top)) in zip("abc", panels, ESCAPE_WINDOWS):
+        omegas, voltages = np.linspace(left, right, cells), np.linspace(bottom, top, cells)
+        found = np.array(workers.map(escape_row, [(phi, omegas) for phi in voltages]))
+        shown = axes.pcolormesh(
+            omegas, voltages, np.where(np.isfinite(found), found, np.nan), norm=LogNorm(10, ESCAPE_SPAN), cmap=CMAP, rasterized=True
+        )
+        axes.set_facecolor(NO_MAP)
+        axes.grid(False)
+        axes.set_title(f"({letter})", loc="left")
+        axes.set(xlabel=f"angular frequency  {style.SYMBOLS['omega_ac']}", ylabel=f"amplitude  {style.SYMBOLS['phi_ac']}")
+        axes.locator_params(axis="x", nbins=5)
+        mesh_phi, mesh_omega = np.meshgrid(voltages, omegas, indexing="ij")
+        further = {"window": [letter] * found.size, "omega": mesh_omega.ravel(), "phi_ac": mesh_phi.ravel()}
+        columns = stack(columns, {**further, "pull_in_time": found.ravel()})
+    for axes, ((left, right), (bottom, top)) in zip(panels, ESCAPE_WINDOWS[1:]):
+        corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
+        axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
+    figure.colorbar(shown, ax=panels[:3], label="instant of escape", location="bottom", shrink=0.5, aspect=45)
+
+    (left, right), (bottom, top) = ESCAPE_WINDOWS[1]
+    places = np.random.default_rng(1).uniform((left, bottom), (right, top), (pairs, 2))
+    distances = 10.0 ** -np.arange(2, 8)
+    tasks = [(distance, chunk) for distance in distances for chunk in np.array_split(places, 20)]
+    shares = np.array(workers.map(uncertain, tasks)).reshape(len(distances), -1).mean(axis=1)
+    seen = shares > 0
+    exponent = float(np.polyfit(np.log(distances[seen]), np.log(shares[seen]), 1)[0]) if seen.sum() > 1 else float("nan")
+    axes = panels[3]
+    axes.loglog(distances[seen], shares[seen], "o-", color=style.COLOURS[0], label=f"slope {exponent:.2f}")
+    axes.loglog(distances, shares[0] * distances / distances[0], ":", color=style.GREY, label="slope 1: smooth edge")
+    axes.set(xlabel=r"distance in  $\bar{\phi}_a$", ylabel="share of pairs with different fates")
+    axes.set_title("(d)  in window (b)", loc="left")
+    axes.legend()
+    figure.suptitle(rf"Escape of the ideal actuator from rest under $\bar\phi_a \sin\bar\omega\bar t$, t ≤ {ESCAPE_SPAN:g} (pale: no escape)")
+    fractal = exponent < 0.9
+    return Entry(
+        "map_escape",
+        "Escape under the harmonic drive",
+        figure,
+        columns,
+        grids=[
+            Grid(
+                "Pairs of places with different fates, window (b)",
+                ["distance in φ_a", "share"],
+                [[f"{d:.0e}", f"{s:.2e}"] for d, s in zip(distances, shares)],
+            )
+        ],
+        remarks=[
+            f"{3 * cells * cells} runs of t ≤ {ESCAPE_SPAN:g}, one communication step each; λ = 10 counts as escape. Panels (b) and (c) are "
+            "the frames drawn in (a) and (b).",
+            f"The edge {'is fractal' if fractal else 'shows no fractal scaling here'}: the share of places whose fate changes within "
+            f"a distance ε falls like ε^{exponent:.2f}"
+            + (", slower than the ε of a smooth edge. There, whether the actuator survives cannot be told from amplitude and frequency to any practical precision." if fractal else "."),
+            "The paper finds all its driven responses bounded, which holds for its parameter sets; without surface elasticity and at "
+            "higher amplitudes escape comes well below the DC threshold near the harmonic resonance.",
+        ],
+    )
