@@ -35,6 +35,22 @@ SYMBOLS = {
 }
 """Symbol of the paper for each variable of the FMU."""
 
+TEXT_SYMBOLS = {
+    "time": "t̄",
+    "lambda": "λ",
+    "lambda3": "λ₃",
+    "lambda3_pull_in": "λ₃ᶜ",
+    "phi": "φ̄",
+    "phi_pull_in": "φ̄ᶜ",
+    "phi_ac": "φ̄ₐ",
+    "omega_ac": "ω̄",
+    "S": "S̄",
+    "gamma_s": "γ̄ₛ",
+    "tau_s": "τ̄ₛ",
+    "E_s": "Ēₛ",
+}
+"""The same as plain text, for reports."""
+
 NAMES = {
     "time": "time",
     "lambda": "stretch",

@@ -12,7 +12,7 @@ import turning_points
 from actuator_fmu import ActuatorFmu
 from comparison import Comparison, Row
 
-from paper.entries import Entry, long_format
+from paper.entries import Claim, Entry, long_format
 from paper.equation import time_to
 
 
@@ -35,35 +35,32 @@ def step_responses(actuator: ActuatorFmu) -> list[Entry]:
                 figures.dc_responses(families, title=title),
                 long_format(pieces, ("time", "lambda3", "lambda3_dot")),
                 rows=table.rows,
-                remarks=[_deformation(families, prestress), _frequency(families, prestress)],
+                claims=[_deformation(families, prestress), _frequency(families, prestress)],
             )
         )
     return entries
 
 
-def _deformation(families: dict[str, list[figures.Oscillation]], prestress: float) -> str:
+def _deformation(families: dict[str, list[figures.Oscillation]], prestress: float) -> Claim:
     reached = {p: [1 - oscillation.exact_lambda3 for oscillation in family] for p, family in families.items()}
-    falls = all(np.all(np.diff(depths) < 0) for depths in reached.values())
-    return (
-        f"The deformation 1 − λ₃ falls with each surface parameter (S = {prestress:g}), as the paper says: "
-        if falls
-        else f"Unlike in the paper, the deformation 1 − λ₃ does not fall with each surface parameter (S = {prestress:g}): "
-    ) + _list(reached)
+    return Claim(
+        f"Deformation under a voltage step falls with each surface parameter ({style.TEXT_SYMBOLS['S']} = {prestress:g}).",
+        all(np.all(np.diff(depths) < 0) for depths in reached.values()),
+        f"1 − λ₃ at the turn: {_list(reached)}.",
+    )
 
 
-def _frequency(families: dict[str, list[figures.Oscillation]], prestress: float) -> str:
+def _frequency(families: dict[str, list[figures.Oscillation]], prestress: float) -> Claim:
     periods = {p: [oscillation.exact_period for oscillation in family] for p, family in families.items()}
-    shorter = all(np.all(np.diff(lengths) < 0) for lengths in periods.values())
-    return (
-        f"The period falls with each surface parameter, that is the frequency rises{', as the paper says' if shorter else ''}: "
-        if shorter
-        else "The frequency does not rise with each surface parameter throughout: periods "
-    ) + _list(periods)
+    return Claim(
+        f"Frequency under a voltage step rises with surface tension and elasticity ({style.TEXT_SYMBOLS['S']} = {prestress:g}).",
+        all(np.all(np.diff(periods[parameter]) < 0) for parameter in ("tau_s", "E_s")),
+        f"Periods: {_list(periods)}.",
+    )
 
 
 def _list(families: dict[str, list[float]]) -> str:
-    names = {"gamma_s": "γ̄ₛ", "tau_s": "τ̄ₛ", "E_s": "Ēₛ"}
-    return "; ".join(f"{names[p]} {', '.join(f'{v:.4g}' for v in values)}" for p, values in families.items()) + "."
+    return "; ".join(f"{style.TEXT_SYMBOLS[p]} {', '.join(f'{v:.4g}' for v in vs)}" for p, vs in families.items())
 
 
 def pull_in(actuator: ActuatorFmu) -> list[Entry]:
@@ -93,21 +90,34 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
         figure.suptitle("Just below and just above the dynamic pull-in voltage")
         entries.append(Entry(key, title, figure, columns))
     entries[0].rows = table.rows
-    slow = next(t for t in families["E_s"] if t.value == 0.007).above
     entries[0].remarks = [
         f"The paper does not print the two voltages of each run; here they are φ̄ᶜ ∓ {distance:g}, one unit of the "
         "last digit of Table 1.",
         "The thresholds in the table are found from the motion alone, by bisection on whether the first rise passes "
         "the saddle, and agree with Eqs. 19 and 20: the energy method is exact for this conservative actuator.",
-        "Above the threshold the motion escapes in finite time (dots) where Ēₛ = 0. With surface elasticity it does "
-        f"not: it goes on along a larger orbit (Ēₛ = 0.007: λ₃ falls to {slow['lambda3'].min():.4f}) and is again "
-        "periodic. The paper calls all motions past the threshold aperiodic.",
     ]
-    entries[1].remarks = [
-        "At the threshold two orbits meet a saddle point (crosses): the orbit from rest is then homoclinic to it. The "
-        "paper calls this a saddle-node bifurcation; a saddle-node, where two equilibria merge, is the static "
-        "pull-in, at a higher voltage. The growth of the period with the voltage (see below, period) tells the "
-        "two apart.",
+    slow = next(t for t in families["E_s"] if t.value == 0.007).above
+    entries[0].claims = [
+        Claim(
+            "The energy method gives the pull-in voltage that direct integration shows.",
+            max(abs(row.difference) for row in table.rows) < 1e-9,
+            f"Bisection on the motion agrees with Eqs. 19 and 20 to {max(abs(row.difference) for row in table.rows):.0e}.",
+        ),
+        Claim(
+            "Past the threshold the motion is aperiodic and its phase trajectory open.",
+            None if slow["lambda3"][-1] > 0.2 else True,
+            "Holds without surface elasticity: the motion escapes in finite time. With it the motion goes on along a larger "
+            f"closed orbit and is periodic again (Ēₛ = 0.007: λ₃ falls to {slow['lambda3'].min():.4f} and comes back).",
+        ),
+    ]
+    entries[1].claims = [
+        Claim(
+            "Dynamic pull-in is a saddle-node bifurcation.",
+            False,
+            "At the threshold the orbit from rest is homoclinic to a saddle point (crosses), which exists on both sides of "
+            "the threshold. The saddle-node, where two equilibria merge, is the static pull-in at a higher voltage. The "
+            "growth of the period tells the two apart (see the period over voltage).",
+        )
     ]
     return entries
 

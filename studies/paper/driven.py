@@ -9,8 +9,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from actuator_fmu import ActuatorFmu
 from comparison import Row
+from scipy.spatial import cKDTree
 
-from paper.entries import Entry, long_format
+from paper.entries import Claim, Entry, Grid, long_format
 from paper.scenes import DETUNING, EXTREME, NEAR_RESONANT, PHI_AC, DrivenRun, shown_run
 from paper.workers import Workers
 
@@ -57,6 +58,17 @@ def follow(actuator: ActuatorFmu, item: tuple[DrivenRun, int]) -> Motion:
     return Motion(run, history, section)
 
 
+def dimension(section: np.ndarray) -> float:
+    """Correlation dimension of a section: 1 on a closed curve, more where the points scatter.
+
+    Slope of the number of pairs over their distance, between 1 % and 10 % of the section's extent.
+    """
+    points = np.column_stack([section[name] / np.ptp(section[name]) for name in OUTPUTS])
+    distances = np.geomspace(0.01, 0.1, 8)
+    pairs = cKDTree(points).count_neighbors(cKDTree(points), distances) - len(points)
+    return float(np.polyfit(np.log(distances), np.log(pairs), 1)[0])
+
+
 def figures(workers: Workers, points: int, checked: dict[DrivenRun, list[Row]]) -> list[Entry]:
     """The eight figures. `checked` holds λ of these runs by the independent integrator beside the FMU's."""
     keys = [(regime, S, parameter) for regime, S in FIGURES for parameter in EXTREME]
@@ -99,21 +111,38 @@ def _draw(number: str, regime: str, prestress: float, motions: dict[str, Motion]
             f"The paper does not give the frequencies; here they are {DETUNING:g} of the harmonic resonances printed in "
             "Tables 2 to 4."
         )
+    dimensions = [dimension(motion.section[1:]) for motion in motions.values()]
+    cells = [
+        [style.TEXT_SYMBOLS[parameter] + f" = {EXTREME[parameter]:g}", f"{motion.run.omega:g}", f"{found:.3f}"]
+        for (parameter, motion), found in zip(motions.items(), dimensions)
+    ]
     return Entry(
         "figure_" + number.replace(".", "_").zfill(2),
         f"Fig. {number}: {regime} drive, {'with' if prestress else 'without'} prestress",
         figure,
         long_format(pieces, ("time", *OUTPUTS)),
         rows=[row for run in runs for row in checked[run]],
-        remarks=remarks + [_VERDICTS[regime]],
+        grids=[Grid("Correlation dimension of the sections (1: a curve)", ["", "ω", "dimension"], cells)],
+        claims=[_claim(regime, prestress, max(dimensions))],
+        remarks=remarks,
     )
 
 
-_VERDICTS = {
-    "harmonic": "The paper sees scattered points, hence aperiodic motion. The points lie on a smooth closed curve: the motion "
-    "is quasi-periodic (evidence: see chaos indicators and the run at the tolerance of a default solver).",
-    "subharmonic": "Closed invariant curves, as the paper says: quasi-periodic.",
-    "superharmonic": "The paper sees structured sets that do not close, hence bounded aperiodic motion. The points lie on "
-    "smooth closed curves: quasi-periodic (evidence: see chaos indicators).",
-    NEAR_RESONANT: "Beating on a closed invariant curve, as the paper says: quasi-periodic.",
-}
+def _claim(regime: str, prestress: float, dimension: float) -> Claim:
+    """What the paper says of a regime (Sections 3.2 and 4), decided by whether the sections are curves."""
+    curves = dimension < 1.25
+    where = f"({style.TEXT_SYMBOLS['S']} = {prestress:g})"
+    found = (
+        f"All three sections are closed curves (correlation dimension at most {dimension:.2f}): quasi-periodic."
+        if curves
+        else f"The points fill more than a curve (correlation dimension up to {dimension:.2f})."
+    )
+    if regime in ("subharmonic", NEAR_RESONANT):
+        beating = "beating, " if regime == NEAR_RESONANT else ""
+        return Claim(f"{regime.capitalize()} drive: {beating}quasi-periodic on closed curves {where}.", curves, found)
+    shape = "scattered points" if regime == "harmonic" else "points on no closed curve"
+    return Claim(
+        f"{regime.capitalize()} drive: bounded but aperiodic, {shape} {where}.",
+        None if curves else True,
+        f"Bounded, but not aperiodic. {found} At the tolerance of a default solver the same runs leave their curves.",
+    )

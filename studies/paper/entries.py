@@ -24,12 +24,22 @@ class Grid:
     rows: Sequence[Sequence[str]]
 
 
+@dataclass(frozen=True)
+class Claim:
+    """A statement of the paper and what became of it. `holds` is None where it holds in part."""
+
+    statement: str
+    holds: bool | None
+    finding: str
+
+
 @dataclass
 class Entry:
     """One figure or table of the paper, or one of ours.
 
     `columns` are the numbers behind the drawing, all of one length, as they go into the CSV. `rows` set paper,
-    exact value and FMU side by side. `remarks` are sentences; the last ones say what the paper leaves open.
+    exact value and FMU side by side. `claims` are statements of the paper that this entry decides, `remarks` what
+    else there is to say: what was chosen where the paper is silent, how a number was obtained.
     """
 
     key: str
@@ -38,12 +48,8 @@ class Entry:
     columns: dict[str, Sequence]
     rows: list[Row] = field(default_factory=list)
     grids: list[Grid] = field(default_factory=list)
+    claims: list[Claim] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
-
-    @property
-    def worst(self) -> float:
-        """Largest difference between FMU and exact value."""
-        return max((abs(row.difference) for row in self.rows), default=0.0)
 
     def write(self, folder: Path) -> None:
         """Write ``<key>.png`` and ``<key>.csv``; the figure is closed."""

@@ -41,6 +41,7 @@ class Response:
     """One case: `omega` in order with `amplitude` over each window (a column each), peaks, and the jump."""
 
     case: SurfaceEffects
+    windows: tuple[float, ...]
     omega: np.ndarray
     amplitude: np.ndarray
     peaks: dict[tuple[str, float], Peak]
@@ -71,12 +72,12 @@ def refine(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, list[float]
     return best
 
 
-def find_jump(actuator: ActuatorFmu, item: tuple[SurfaceEffects, Peak]) -> tuple[float, float, float]:
+def find_jump(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, Peak]) -> tuple[float, float, float]:
     """Bisection for the ω above the harmonic peak at which the amplitude falls, to 1e-9."""
-    case, peak = item
+    case, window, peak = item
 
     def amplitude(omega: float) -> float:
-        return float(scan(actuator, (case, np.array([omega]), WINDOWS[-1:]))[0, 0])
+        return float(scan(actuator, (case, np.array([omega]), (window,)))[0, 0])
 
     below, above = peak.omega, peak.omega + 1e-3
     high, low = peak.amplitude, amplitude(above)
@@ -98,32 +99,32 @@ def starts(omega: np.ndarray, amplitude: np.ndarray, span: tuple[float, float], 
     return [float(omega[k]) for k in sorted(tops, key=lambda k: -amplitude[k])[:most]]
 
 
-def responses(workers: Workers, frequencies: int) -> list[Response]:
+def responses(workers: Workers, frequencies: int, windows: tuple[float, ...] = WINDOWS) -> dict[SurfaceEffects, Response]:
     """All 14 cases of Fig. 8 with their peaks for every window, from scans of that many frequencies."""
     omega = np.linspace(LOWEST, HIGHEST, frequencies)
     chunks = np.array_split(omega, max(1, frequencies // CHUNK))
-    scanned = workers.map(scan, [(case, chunk, WINDOWS) for case in cases() for chunk in chunks])
+    scanned = workers.map(scan, [(case, chunk, windows) for case in cases() for chunk in chunks])
     tables = [np.concatenate(scanned[k : k + len(chunks)]) for k in range(0, len(scanned), len(chunks))]
     wanted = [
         (case, branch, column, starts(omega, table[:, column], SPANS[branch]))
         for case, table in zip(cases(), tables)
         for branch in BRANCHES
-        for column in range(len(WINDOWS))
+        for column in range(len(windows))
     ]
     spacing = omega[1] - omega[0]
-    peaks = workers.map(refine, [(case, WINDOWS[column], at, spacing) for case, _, column, at in wanted])
+    peaks = workers.map(refine, [(case, windows[column], at, spacing) for case, _, column, at in wanted])
     by_case: dict[SurfaceEffects, dict] = {case: {} for case in cases()}
     for (case, branch, column, _), peak in zip(wanted, peaks):
-        by_case[case][branch, WINDOWS[column]] = peak
-    jumps = workers.map(find_jump, [(case, by_case[case]["harmonic", WINDOWS[-1]]) for case in cases()])
+        by_case[case][branch, windows[column]] = peak
+    jumps = workers.map(find_jump, [(case, windows[-1], by_case[case]["harmonic", windows[-1]]) for case in cases()])
     # the curve shows its peaks, which lie between the frequencies of the scan
     extra = [np.array(sorted({round(p.omega, 9) for p in by_case[case].values()})) for case in cases()]
-    filled = workers.map(scan, [(case, at, WINDOWS) for case, at in zip(cases(), extra)])
-    found = []
+    filled = workers.map(scan, [(case, at, windows) for case, at in zip(cases(), extra)])
+    found = {}
     for case, table, at, more, jump in zip(cases(), tables, extra, filled, jumps):
         order = np.argsort(np.concatenate([omega, at]))
         together = np.concatenate([table, more])[order]
-        found.append(Response(case, np.concatenate([omega, at])[order], together, by_case[case], jump))
+        found[case] = Response(case, windows, np.concatenate([omega, at])[order], together, by_case[case], jump)
     return found
 
 

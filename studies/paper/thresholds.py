@@ -13,7 +13,7 @@ from comparison import Row
 from references import SurfaceEffects
 
 from paper import equation
-from paper.entries import Entry, Grid, draw_table, long_format
+from paper.entries import Claim, Entry, draw_table, long_format
 from paper.thickness_range import ranges
 
 IDEAL = {"gamma_s": 0.0, "tau_s": 0.0, "E_s": 0.0}
@@ -74,14 +74,16 @@ def table_1(actuator: ActuatorFmu) -> Entry:
         draw_table(header, cells, title="Table 1: thickness stretch and voltage at dynamic pull-in", marked=marked),
         columns,
         rows=rows,
-        grids=[Grid("Table 1, paper, exact and FMU", header, cells)],
+        claims=[
+            Claim(
+                "Table 1: pull-in stretches and voltages, to four digits.",
+                None if wrong else True,
+                f"{entries - len(wrong)} of {entries} entries are the exact values rounded. Not so: "
+                + "; ".join(f"{row.quantity} is printed {row.printed}, exact {row.exact:.7f}" for row in wrong)
+                + ".",
+            )
+        ],
         remarks=[
-            f"Reproducible: {entries - len(wrong)} of its {entries} entries are the exact values rounded to four "
-            "digits.",
-            *(
-                f"Not the exact value rounded: {row.quantity} is printed {row.printed}, exact is {row.exact:.7f}."
-                for row in wrong
-            ),
             "The exact values are multiprecision roots of Eqs. 19 and 20. These equations have further roots that are "
             "no thresholds: λ = 1 always, and for 0 < Ēₛ < E* the local minimum of the stagnation curve "
             "(Ēₛ = 0.007: φ̄ = 0.53502, λ₃ = 0.09687). A root finder started there would report them.",
@@ -211,12 +213,18 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
         figure,
         long_format(pieces, ("value", "phi_pull_in", "lambda3_pull_in")),
         rows=rows,
+        claims=[
+            Claim(
+                "Pull-in is eliminated for Ēₛ > 0.029.",
+                None,
+                f"It vanishes at E* = {vanishing.E_s:.10f}, which the paper rounds down; Table 1 itself has a threshold at "
+                "0.029. E* depends on γ̄ₛ − τ̄ₛ and on S̄.",
+            )
+        ],
         remarks=[
             "FMU: its variables phi_pull_in and lambda3_pull_in. Exact: roots of Eqs. 19 and 20 found from the equations "
             "as printed, without the FMU; E* in multiprecision. The stretch at E* hangs on E* like a root, so that the "
             "last digit of E* shows in its seventh.",
-            f"Pull-in vanishes at E* = {vanishing.E_s:.10f}, which the paper rounds down to 0.029 (and Table 1 has a "
-            "threshold at 0.029). E* depends on γ̄ₛ − τ̄ₛ and on S̄.",
         ],
     )
 
