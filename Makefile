@@ -19,10 +19,12 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all guide test test-platforms stress bench env clean
+.PHONY: help run fmu fmu-all guide paper test test-platforms stress bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
+	@echo 'make paper  regenerate the figures and tables of the paper into target/paper (some minutes);'
+	@echo '            WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
 	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
@@ -49,6 +51,10 @@ fmu-all: $(INSTALLED)
 guide: $(INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu guide
+
+paper: fmu
+	$(call heading,Paper)
+	@PYTHONPATH=studies $(PYTHON_IN_VENV) -m paper $(if $(WORKERS),--workers $(WORKERS)) $(PAPER)
 
 test: $(INSTALLED)
 	$(call heading,Format)

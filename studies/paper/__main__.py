@@ -8,6 +8,7 @@ Writes a PNG and a CSV for each, and report.html, which needs no other file.
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import platform
 import resource
@@ -39,6 +40,7 @@ class Size:
     """Of the indicators of chaos and of the runs at a default tolerance."""
     chaotic_window: float = 2000.0
     section_points: int = 3000
+    longest_history: float = math.inf
     threshold_points: int = 200
     period_points: int = 60
     pull_in_cells: int = 300
@@ -51,10 +53,11 @@ class Size:
 
 SMALL = Size(
     frequencies=150,
-    windows=(500.0, 2000.0),
+    windows=(300.0, 600.0),
     window=300.0,
     chaotic_window=100.0,
     section_points=300,
+    longest_history=200.0,
     threshold_points=20,
     period_points=8,
     pull_in_cells=20,
@@ -97,6 +100,13 @@ def independent(workers: Workers, responses: resonance_entries.Responses, size: 
     return Independent(found[0], found[1], peaks, found[5:])
 
 
+def _write(_actuator: ActuatorFmu, item: tuple[Entry, Path, int]) -> None:
+    entry, folder, dpi = item
+    style.apply()
+    style.plt.rcParams["savefig.dpi"] = dpi
+    entry.write(folder)
+
+
 def study(workers: Workers, progress: Progress, size: Size) -> list[Entry]:
     """All entries in the order of the report."""
     actuator = workers.actuator
@@ -117,7 +127,7 @@ def study(workers: Workers, progress: Progress, size: Size) -> list[Entry]:
         alone = independent(workers, responses, size)
         checked = chaos.checks(actuator, alone.paper)
     with progress.stage("driven motions (Figs. 9 to 12, B.1 to B.4)"):
-        driven_figures = driven.figures(workers, size.section_points, checked)
+        driven_figures = driven.figures(workers, size.section_points, checked, size.longest_history)
     entries.append(resonance_entries.figure_8(actuator, responses, growth, workers.count))
     entries += resonance_entries.tables(responses, alone.peaks)
     entries.append(resonance_entries.window_comparison(responses))
@@ -158,17 +168,16 @@ def main() -> int:
         size = Size(**{**vars(size), "frequencies": arguments.frequencies})
 
     style.apply()
-    style.plt.rcParams.update({"savefig.dpi": size.dpi, "figure.max_open_warning": 0})
+    style.plt.rcParams["figure.max_open_warning"] = 0  # all are drawn at the end, by all workers
     arguments.output.mkdir(parents=True, exist_ok=True)
     start = time.perf_counter()
-    progress = Progress(stages=13)
+    progress = Progress(stages=14)
     with Workers(arguments.fmu, arguments.workers, progress) as workers:
         entries = study(workers, progress, size)
         description = workers.actuator.description
-    with progress.stage("writing figures, numbers and the report"):
-        for done, entry in enumerate(entries, 1):
-            entry.write(arguments.output)
-            progress.part(done, len(entries))
+        with progress.stage("drawing"):
+            workers.map(_write, [(entry, arguments.output, size.dpi) for entry in entries])
+    with progress.stage("writing the report"):
         facts = report.Facts(
             [
                 ("Command", "make paper" + ("" if not arguments.small else " (small version: verdicts rest on too little)")),
