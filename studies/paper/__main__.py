@@ -180,8 +180,14 @@ def main() -> int:
     with progress.stage("writing the report"):
         facts = report.Facts(
             [
-                ("Command", "make paper" + ("" if not arguments.small else " (small version: verdicts rest on too little)")),
-                ("FMU", f"{description.modelName} {description.version or ''}, guid {description.guid}, run through FMPy"),
+                (
+                    "Command",
+                    "make paper" + ("" if not arguments.small else " (small version: verdicts rest on too little)"),
+                ),
+                (
+                    "FMU",
+                    f"{description.modelName} {description.version or ''}, guid {description.guid}, run through FMPy",
+                ),
                 ("Workers", f"{arguments.workers} process(es), {os.cpu_count()} processors, {platform.machine()}"),
                 ("Time", f"{time.perf_counter() - start:.0f} s, of processor time {_processor_time():.0f} s"),
                 ("Versions", f"Python {platform.python_version()}, numpy {np.__version__}"),
@@ -189,7 +195,10 @@ def main() -> int:
         )
         page = arguments.output / "report.html"
         report.write(page, entries, slips.slips(), facts)
-    print(f"\n{len(entries)} figures and tables in {time.perf_counter() - start:.0f} s ({_processor_time():.0f} s of processor time)")
+    print(
+        f"\n{len(entries)} figures and tables in {time.perf_counter() - start:.0f} s ({_processor_time():.0f} s of "
+        "processor time)"
+    )
     print(page)
     return 0
 

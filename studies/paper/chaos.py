@@ -102,7 +102,8 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
     verdict = (
         f"No run of the paper is chaotic or aperiodic: at t = {window:g} MEGNO lies between {last.min():.2f} and "
         f"{last.max():.2f} for all {len(runs)} of them and the exponents are at most "
-        f"{np.abs(indicators.exponent[:, -1]).max() / law:.1f} ln t / t and fall like it. For three chaotic motions of the "
+        f"{np.abs(indicators.exponent[:, -1]).max() / law:.1f} ln t / t and fall like it. For three chaotic motions "
+        "of the "
         f"same equation MEGNO has grown to {last_chaotic.min():.1f} and more by t = {chaotic.times[-1]:g}."
     )
     names = [run.regime for run in runs] + ["chaotic"] * len(CHAOTIC)
@@ -120,7 +121,13 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
             "lyapunov_exponent": [*indicators.exponent[:, -1], *chaotic.exponent[:, -1]],
         },
         rows=[max((rows[-1] for rows in checked.values()), key=lambda row: abs(row.difference))],
-        grids=[Grid(f"Indicators at t = {window:g} (chaotic: {chaotic.times[-1]:g})", ["", "case", "ω", "MEGNO", "exponent"], cells)],
+        grids=[
+            Grid(
+                f"Indicators at t = {window:g} (chaotic: {chaotic.times[-1]:g})",
+                ["", "case", "ω", "MEGNO", "exponent"],
+                cells,
+            )
+        ],
         claims=[
             Claim(
                 "At harmonic and superharmonic drive the motion departs from quasi-periodicity.",
@@ -129,7 +136,8 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
             )
         ],
         remarks=[
-            "Computed without the FMU: Eq. 16 as printed with its exact variational equations, DOP853. Its λ is held against "
+            "Computed without the FMU: Eq. 16 as printed with its exact variational equations, DOP853. Its λ is held "
+            "against "
             "the FMU's at the same times (the worst of all runs is in the table).",
             "MEGNO tends to 2 on a torus, from below where the frequency hardly depends on the amplitude, and grows in "
             "proportion to t in chaos.",
@@ -178,7 +186,9 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
     figure = plt.figure(figsize=(12.5, 11.5))
     grid = figure.add_gridspec(3, 3, height_ratios=(1, 1.15, 1.15))
     exact_amplitude = {}
-    columns: dict[str, list] = {name: [] for name in ("regime", "varied", "omega", "rtol", "amplitude", "amplitude_fmu")}
+    columns: dict[str, list] = {
+        name: [] for name in ("regime", "varied", "omega", "rtol", "amplitude", "amplitude_fmu")
+    }
     cells = []
     for index, loose in enumerate(shown):
         run = loose.run
@@ -212,11 +222,15 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
     history.legend(loc="upper left")
     converging = figure.add_subplot(grid[0, 2])
     exact = exact_amplitude[found[0].run]
-    converging.loglog([one.rtol for one in ladder], [abs(one.amplitude - exact) for one in ladder], "o-", color=style.COLOURS[1])
+    converging.loglog(
+        [one.rtol for one in ladder], [abs(one.amplitude - exact) for one in ladder], "o-", color=style.COLOURS[1]
+    )
     converging.invert_xaxis()
     converging.set(xlabel="relative tolerance of RK45", ylabel=r"difference of $\lambda_3^a$ from the FMU")
     converging.set_title("(b)  convergence of (a)", loc="left")
-    figure.suptitle(f"The same motion at the tolerance of a default 4(5) solver and at 1e-12, t ≤ {window:g}; sections at kπ/ω")
+    figure.suptitle(
+        f"The same motion at the tolerance of a default 4(5) solver and at 1e-12, t ≤ {window:g}; sections at kπ/ω"
+    )
     for loose in found:
         parameter = next(p for p in EXTREME if getattr(loose.run.case, p) == EXTREME[p])
         line = (loose.run.regime, parameter, loose.run.omega, loose.rtol, loose.amplitude, exact_amplitude[loose.run])
@@ -232,14 +246,21 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
             Grid("Amplitude of λ₃", ["regime", "varied", "ω", "tolerance of RK45", "RK45", "FMU at 1e-12"], cells),
         ],
         remarks=[
-            f"RK45 is SciPy's; its pair of formulas (Dormand and Prince) is that of MATLAB's ode45, which the paper used, with "
-            f"ode45's default tolerances {ODE45_RTOL:g} and {ODE45_ATOL:g}. The paper prints no tolerances, so that this shows a "
+            "RK45 is SciPy's; its pair of formulas (Dormand and Prince) is that of MATLAB's ode45, which the paper "
+            "used, with "
+            f"ode45's default tolerances {ODE45_RTOL:g} and {ODE45_ATOL:g}. The paper prints no tolerances, so that "
+            "this shows a "
             "likely cause, not a proven one; step control differs in detail between the two.",
-            f"At that tolerance the harmonic run for γ̄ₛ = 0.1 reaches an amplitude of {ladder[0].amplitude:.3f} by t = {window:g}, "
-            f"where the exact one is {exact:.4f}; its section is scattered, as in the paper's Fig. 9. With closer tolerances "
-            "RK45 converges to the FMU (panel b). Scatter that goes away with the tolerance is an error of integration.",
-            f"At the superharmonic two things keep a section from closing: the slow modulation has not come round by t = {window:g} "
-            "even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the default tolerance the motion "
+            f"At that tolerance the harmonic run for γ̄ₛ = 0.1 reaches an amplitude of {ladder[0].amplitude:.3f} by "
+            f"t = {window:g}, "
+            f"where the exact one is {exact:.4f}; its section is scattered, as in the paper's Fig. 9. With closer "
+            "tolerances "
+            "RK45 converges to the FMU (panel b). Scatter that goes away with the tolerance is an error of "
+            "integration.",
+            "At the superharmonic two things keep a section from closing: the slow modulation has not come round by "
+            f"t = {window:g} "
+            "even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the default tolerance "
+            "the motion "
             "drifts off its curve.",
         ],
     )

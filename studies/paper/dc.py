@@ -44,7 +44,8 @@ def step_responses(actuator: ActuatorFmu) -> list[Entry]:
 def _deformation(families: dict[str, list[figures.Oscillation]], prestress: float) -> Claim:
     reached = {p: [1 - oscillation.exact_lambda3 for oscillation in family] for p, family in families.items()}
     return Claim(
-        f"Deformation under a voltage step falls with each surface parameter ({style.TEXT_SYMBOLS['S']} = {prestress:g}).",
+        f"Deformation under a voltage step falls with each surface parameter ({style.TEXT_SYMBOLS['S']} = "
+        f"{prestress:g}).",
         all(np.all(np.diff(depths) < 0) for depths in reached.values()),
         f"1 − λ₃ at the turn: {_list(reached)}.",
     )
@@ -53,7 +54,8 @@ def _deformation(families: dict[str, list[figures.Oscillation]], prestress: floa
 def _frequency(families: dict[str, list[figures.Oscillation]], prestress: float) -> Claim:
     periods = {p: [oscillation.exact_period for oscillation in family] for p, family in families.items()}
     return Claim(
-        f"Frequency under a voltage step rises with surface tension and elasticity ({style.TEXT_SYMBOLS['S']} = {prestress:g}).",
+        f"Frequency under a voltage step rises with surface tension and elasticity ({style.TEXT_SYMBOLS['S']} = "
+        f"{prestress:g}).",
         all(np.all(np.diff(periods[parameter]) < 0) for parameter in ("tau_s", "E_s")),
         f"Periods: {_list(periods)}.",
     )
@@ -76,8 +78,18 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
     ]
     columns = long_format(pieces, ("time", "lambda3", "lambda3_dot"))
     drawings = (
-        ("figure_06", "Fig. 6: time histories at both sides of dynamic pull-in", figures.transition_histories, figures.COLLAPSE),
-        ("figure_07", "Fig. 7: phase portraits at both sides of dynamic pull-in", figures.transition_portraits, figures.SADDLE),
+        (
+            "figure_06",
+            "Fig. 6: time histories at both sides of dynamic pull-in",
+            figures.transition_histories,
+            figures.COLLAPSE,
+        ),
+        (
+            "figure_07",
+            "Fig. 7: phase portraits at both sides of dynamic pull-in",
+            figures.transition_portraits,
+            figures.SADDLE,
+        ),
     )
     entries = []
     for key, title, draw, mark in drawings:
@@ -101,12 +113,14 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
         Claim(
             "The energy method gives the pull-in voltage that direct integration shows.",
             max(abs(row.difference) for row in table.rows) < 1e-9,
-            f"Bisection on the motion agrees with Eqs. 19 and 20 to {max(abs(row.difference) for row in table.rows):.0e}.",
+            "Bisection on the motion agrees with Eqs. 19 and 20 to "
+            f"{max(abs(row.difference) for row in table.rows):.0e}.",
         ),
         Claim(
             "Past the threshold the motion is aperiodic and its phase trajectory open.",
             None if slow["lambda3"][-1] > 0.2 else True,
-            "Holds without surface elasticity: the motion escapes in finite time. With it the motion goes on along a larger "
+            "Holds without surface elasticity: the motion escapes in finite time. With it the motion goes on along a "
+            "larger "
             f"closed orbit and is periodic again (Ēₛ = 0.007: λ₃ falls to {slow['lambda3'].min():.4f} and comes back).",
         ),
     ]
@@ -114,8 +128,10 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
         Claim(
             "Dynamic pull-in is a saddle-node bifurcation.",
             False,
-            "At the threshold the orbit from rest is homoclinic to a saddle point (crosses), which exists on both sides of "
-            "the threshold. The saddle-node, where two equilibria merge, is the static pull-in at a higher voltage. The "
+            "At the threshold the orbit from rest is homoclinic to a saddle point (crosses), which exists on both "
+            "sides of "
+            "the threshold. The saddle-node, where two equilibria merge, is the static pull-in at a higher voltage. "
+            "The "
             "growth of the period tells the two apart (see the period over voltage).",
         )
     ]

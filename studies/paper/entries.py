@@ -81,7 +81,9 @@ def stack(columns: dict[str, Sequence], further: dict[str, Sequence]) -> dict[st
     return {name: [*columns[name], *further[name]] for name in columns} if columns else dict(further)
 
 
-def draw_table(header: Sequence[str], rows: Sequence[Sequence[str]], *, title: str, marked: set = frozenset()) -> Figure:
+def draw_table(
+    header: Sequence[str], rows: Sequence[Sequence[str]], *, title: str, marked: set = frozenset()
+) -> Figure:
     """A table as a figure. `marked` cells, (row, column) counted from 0, are drawn in bold on a tint."""
     widths = [max(len(_plain(cell)) for cell in column) + 2 for column in zip(header, *rows)]
     figure, axes = plt.subplots(figsize=(0.098 * sum(widths) + 0.4, 0.3 * (len(rows) + 1) + 0.6))

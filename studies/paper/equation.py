@@ -95,9 +95,7 @@ def extrema(case: SurfaceEffects, highest: float = 8.0) -> list[tuple[PullIn, bo
     rising = one.force(grid, one.stagnation(grid)) < 0
     turns = np.flatnonzero(rising[:-1] != rising[1:])
     roots = [brentq(slope, grid[k], grid[k + 1], xtol=1e-15) for k in turns]
-    return [
-        (PullIn(float(one.stagnation(root)[0]) ** 0.5, root**-2), bool(rising[k])) for k, root in zip(turns, roots)
-    ]
+    return [(PullIn(float(one.stagnation(root)[0]) ** 0.5, root**-2), bool(rising[k])) for k, root in zip(turns, roots)]
 
 
 def threshold(case: SurfaceEffects) -> PullIn:

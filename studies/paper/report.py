@@ -6,17 +6,21 @@ import base64
 import re
 from dataclasses import dataclass, field
 from html import escape
+from io import BytesIO
 from pathlib import Path
 
 import figure_style as style
 from comparison import Row
+from PIL import Image
 
 from paper.entries import Claim, Entry, Grid
 
 _STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; max-width: 72rem; margin: 0 auto; padding: 1rem 1.5rem 4rem; color: #1c1c1c; }
+body { font: 16px/1.5 system-ui, sans-serif; color: #1c1c1c; }
+body { max-width: 72rem; margin: 0 auto; padding: 1rem 1.5rem 4rem; }
 h1 { line-height: 1.2; } h2 { margin-top: 3rem; border-top: 1px solid #d5d5d5; padding-top: 1.2rem; }
-img { max-width: 100%; height: auto; } nav { columns: 18rem; font-size: .92rem; } nav ul { margin: 0; padding-left: 1.1rem; }
+img { max-width: 100%; height: auto; }
+nav { columns: 18rem; font-size: .92rem; } nav ul { margin: 0; padding-left: 1.1rem; }
 table { border-collapse: collapse; font-size: .86rem; margin: .6rem 0 1.2rem; }
 th, td { border: 1px solid #d5d5d5; padding: .2rem .55rem; text-align: right; font-variant-numeric: tabular-nums; }
 th { background: #eef2f6; } td:first-child, th:first-child { text-align: left; }
@@ -40,10 +44,14 @@ class Facts:
 def write(path: Path, entries: list[Entry], slips: list[Claim], facts: Facts) -> None:
     """Write the page; the PNGs of `entries` must already stand beside it."""
     body = [
-        "<h1>Nonlinear dynamics of miniaturized dielectric elastomer actuators with surface effects, through the FMU</h1>",
-        "<p>Every figure and table of A. P. Singh, G. Shmuel and A. K. Sharma's paper of that title, computed with the packed "
-        "FMU and set beside exact values. <em>Exact</em> means: found another way than by the FMU – multiprecision roots and "
-        "quadrature (tests/reference), or SciPy's DOP853 on Eq. 16 as printed. Fig. 1 is a drawing and has no numbers.</p>",
+        "<h1>Nonlinear dynamics of miniaturized dielectric elastomer actuators with surface effects, through the "
+        "FMU</h1>",
+        "<p>Every figure and table of A. P. Singh, G. Shmuel and A. K. Sharma's paper of that title, computed with "
+        "the packed "
+        "FMU and set beside exact values. <em>Exact</em> means: found another way than by the FMU – multiprecision "
+        "roots and "
+        "quadrature (tests/reference), or SciPy's DOP853 on Eq. 16 as printed. Fig. 1 is a drawing and has no "
+        "numbers.</p>",
         _facts(facts),
         "<h2 id='claims'>What holds and what does not</h2>",
         _claims([(claim, entry.key) for entry in entries for claim in entry.claims]),
@@ -78,7 +86,7 @@ def _claims(claims: list[tuple[Claim, str | None]]) -> str:
 
 
 def _section(entry: Entry, folder: Path) -> str:
-    picture = base64.b64encode((folder / f"{entry.key}.png").read_bytes()).decode()
+    picture = base64.b64encode(_small(folder / f"{entry.key}.png")).decode()
     parts = [
         f"<h2 id='{entry.key}'>{escape(entry.title)}</h2>",
         f"<img alt='{escape(entry.title, quote=True)}' src='data:image/png;base64,{picture}'>",
@@ -92,6 +100,16 @@ def _section(entry: Entry, folder: Path) -> str:
         parts.append(_comparison(entry.rows))
     parts += [_grid(grid) for grid in entry.grids]
     return "".join(parts)
+
+
+def _small(path: Path) -> bytes:
+    """The PNG; a big one, which is one of many lines and few colours, in 256 colours and a third of its size."""
+    if path.stat().st_size < 500_000:
+        return path.read_bytes()
+    reduced = BytesIO()
+    with Image.open(path) as picture:
+        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(reduced, "PNG", optimize=True)
+    return reduced.getvalue()
 
 
 def _comparison(rows: list[Row]) -> str:

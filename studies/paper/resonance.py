@@ -99,7 +99,9 @@ def starts(omega: np.ndarray, amplitude: np.ndarray, span: tuple[float, float], 
     return [float(omega[k]) for k in sorted(tops, key=lambda k: -amplitude[k])[:most]]
 
 
-def responses(workers: Workers, frequencies: int, windows: tuple[float, ...] = WINDOWS) -> dict[SurfaceEffects, Response]:
+def responses(
+    workers: Workers, frequencies: int, windows: tuple[float, ...] = WINDOWS
+) -> dict[SurfaceEffects, Response]:
     """All 14 cases of Fig. 8 with their peaks for every window, from scans of that many frequencies."""
     omega = np.linspace(LOWEST, HIGHEST, frequencies)
     chunks = np.array_split(omega, max(1, frequencies // CHUNK))

@@ -51,7 +51,7 @@ def figure_8(actuator: ActuatorFmu, responses: Responses, growth: list[tuple[int
             axes.plot([], [], "|", color=style.GREY, markersize=11, markeredgewidth=1.8, label="paper's peak")
             axes.set_title(f"({letter})  {style.NAMES[parameter]}, {style.setting(S=prestress)}", loc="left")
             axes.set(xlim=(response.omega[0], response.omega[-1]), ylim=(0.006, 5))
-            axes.legend(loc="upper left", fontsize=9)
+            axes.legend(loc="upper center", bbox_to_anchor=(0.55, 1.03), fontsize=9)
             axes.tick_params(labelbottom=True)
         row[0].set_ylabel(r"amplitude  $\lambda_3^a$")
     for axes in rows[-1]:
@@ -185,7 +185,9 @@ def check_peaks(actuator: ActuatorFmu, item: tuple[list[tuple[SurfaceEffects, fl
     """λ₃ᵃ beside each of the given peaks (case, ω) over a window: the independent integrator and the FMU."""
     peaks, window = item
     places = [(case, omega + step) for case, omega in peaks for step in BESIDE_PEAK]
-    exact = DrivenRuns([case for case, _ in places], np.array([omega for _, omega in places]), PHI_AC).amplitudes(window)
+    exact = DrivenRuns([case for case, _ in places], np.array([omega for _, omega in places]), PHI_AC).amplitudes(
+        window
+    )
     rows = []
     for (case, omega), value in zip(places, exact):
         (found,) = amplitudes(actuator, case.scene(phi_ac=PHI_AC, omega_ac=omega), (window,), EXACTLY)

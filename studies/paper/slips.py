@@ -33,10 +33,15 @@ def slips() -> list[Claim]:
         Claim(
             "Below Eq. 7: the through-thickness inertia is negligible.",
             None,
-            "Eqs. 14 and 16 keep it all the same (2λ⁻⁶ beside c), and so does the FMU. It makes the period of the reference "
+            "Eqs. 14 and 16 keep it all the same (2λ⁻⁶ beside c), and so does the FMU. It makes the period of the "
+            "reference "
             f"motion of Fig. 2 {100 * thickness_inertia():.2f} % longer at c = 100.",
         ),
-        Claim("Eq. 12: the work of the in-plane forces is −2P(λ − 1).", False, "It lacks a length: Eq. 13 has −2PL(λ − 1)."),
+        Claim(
+            "Eq. 12: the work of the in-plane forces is −2P(λ − 1).",
+            False,
+            "It lacks a length: Eq. 13 has −2PL(λ − 1).",
+        ),
         Claim(
             "Eq. 4: γₛ is the energy per undeformed area.",
             False,

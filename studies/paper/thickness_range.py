@@ -8,7 +8,9 @@ import numpy as np
 from actuator_fmu import ActuatorFmu, Scene
 
 
-def ranges(actuator: ActuatorFmu, scene: Scene, windows: Sequence[float], tolerance: float) -> list[tuple[float, float]]:
+def ranges(
+    actuator: ActuatorFmu, scene: Scene, windows: Sequence[float], tolerance: float
+) -> list[tuple[float, float]]:
     """λ₃ lowest and highest over [0, t] for each t of the growing `windows`; one communication step each."""
     actuator.start({**scene, "record_extremes": True}, tolerance=tolerance)
     found = []

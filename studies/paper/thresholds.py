@@ -198,10 +198,15 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
     star = vanishing_elasticity(actuator)
     rows.append(Row("E* from the FMU, by bisection", "0.029", vanishing.E_s, star))
     rows.append(Row("lambda3 there", None, vanishing.lambda3, own_threshold(actuator, alone("E_s", star)).lambda3))
-    for axes, field, symbol in ((voltage, "phi_pull_in", "phi_pull_in"), (stretch, "lambda3_pull_in", "lambda3_pull_in")):
+    for axes, field, symbol in (
+        (voltage, "phi_pull_in", "phi_pull_in"),
+        (stretch, "lambda3_pull_in", "lambda3_pull_in"),
+    ):
         axes.plot(star, last[field], "*", color=style.COLOURS[2], markersize=13, label=f"$E^*$ = {star:.8f}")
         axes.set_xlabel("surface parameter")
-        axes.set_ylabel(f"critical {'voltage' if field == 'phi_pull_in' else 'thickness stretch'}  {style.SYMBOLS[symbol]}")
+        axes.set_ylabel(
+            f"critical {'voltage' if field == 'phi_pull_in' else 'thickness stretch'}  {style.SYMBOLS[symbol]}"
+        )
         axes.plot([], [], label="Table 1, as printed", **style.EXACT)
         axes.legend()
     voltage.set_title("(a)", loc="left")
@@ -217,12 +222,14 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
             Claim(
                 "Pull-in is eliminated for Ēₛ > 0.029.",
                 None,
-                f"It vanishes at E* = {vanishing.E_s:.10f}, which the paper rounds down; Table 1 itself has a threshold at "
+                f"It vanishes at E* = {vanishing.E_s:.10f}, which the paper rounds down; Table 1 itself has a "
+                "threshold at "
                 "0.029. E* depends on γ̄ₛ − τ̄ₛ and on S̄.",
             )
         ],
         remarks=[
-            "FMU: its variables phi_pull_in and lambda3_pull_in. Exact: roots of Eqs. 19 and 20 found from the equations "
+            "FMU: its variables phi_pull_in and lambda3_pull_in. Exact: roots of Eqs. 19 and 20 found from the "
+            "equations "
             "as printed, without the FMU; E* in multiprecision. The stretch at E* hangs on E* like a root, so that the "
             "last digit of E* shows in its seventh.",
         ],

@@ -74,7 +74,9 @@ def test_amplitude_in_one_communication_step(actuator, reference):
 
 def test_amplitude_without_the_fmu():
     reference = references.driven_amplitudes()[0]
-    (found,) = DrivenRuns([reference.case], np.array([reference.omega_ac]), reference.phi_ac).amplitudes(reference.stop_time)
+    (found,) = DrivenRuns([reference.case], np.array([reference.omega_ac]), reference.phi_ac).amplitudes(
+        reference.stop_time
+    )
     assert abs(found - reference.amplitude) <= 1e-9  # DOP853 at 1e-12 over 2000 time units
 
 
@@ -100,7 +102,11 @@ def test_figures_4_and_5_lie_on_the_exact_curves(actuator):
 
 @pytest.mark.parametrize(
     "branch, window, at, height",
-    [("harmonic", 2000.0, 0.14384, 0.79), ("subharmonic", 2000.0, 0.06921, 0.118), ("superharmonic", 5000.0, 0.27643, 0.236)],
+    [
+        ("harmonic", 2000.0, 0.14384, 0.79),
+        ("subharmonic", 2000.0, 0.06921, 0.118),
+        ("superharmonic", 5000.0, 0.27643, 0.236),
+    ],
 )
 def test_peaks_are_refined_to_the_highest_amplitude(actuator, branch, window, at, height):
     low, high = resonance.SPANS[branch]
@@ -217,7 +223,13 @@ def test_the_small_version_from_end_to_end(fmu_path, tmp_path):
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     assert done.stderr == ""
     wanted = {f"figure_{n:02}" for n in range(2, 13)} | {f"figure_B_{n}" for n in range(1, 5)}
-    wanted |= {f"table_{n}" for n in range(1, 5)} | {"figure_A_1", "map_pull_in", "map_thresholds", "period", "map_escape"}
+    wanted |= {f"table_{n}" for n in range(1, 5)} | {
+        "figure_A_1",
+        "map_pull_in",
+        "map_thresholds",
+        "period",
+        "map_escape",
+    }
     for key in wanted:
         assert (tmp_path / f"{key}.png").read_bytes().startswith(b"\x89PNG"), key
         with (tmp_path / f"{key}.csv").open(newline="", encoding="utf-8") as file:
