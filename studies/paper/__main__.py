@@ -28,6 +28,7 @@ from paper.scenes import BRANCHES, printed_resonances
 from paper.workers import Workers
 
 DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "paper"
+GALLERY = ["figure_04", "figure_08", "default_tolerance", "map_escape"]
 
 
 @dataclass(frozen=True)
@@ -154,6 +155,7 @@ def main() -> int:
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the results (%(default)s)")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="worker processes (%(default)s)")
     parser.add_argument("--frequencies", type=int, help=f"frequencies of each response ({Size.frequencies})")
+    parser.add_argument("--gallery", type=Path, help="folder for small copies of some figures, for the README")
     parser.add_argument("--small", action="store_true", help="little of everything, in seconds")
     arguments = parser.parse_args()
     if not arguments.fmu.is_file():
@@ -195,6 +197,8 @@ def main() -> int:
         )
         page = arguments.output / "report.html"
         report.write(page, entries, slips.slips(), facts)
+        if arguments.gallery:
+            report.gallery(arguments.output, GALLERY, arguments.gallery)
     print(
         f"\n{len(entries)} figures and tables in {time.perf_counter() - start:.0f} s ({_processor_time():.0f} s of "
         "processor time)"

@@ -106,9 +106,21 @@ def _small(path: Path) -> bytes:
     """The PNG; a big one, which is one of many lines and few colours, in 256 colours and a third of its size."""
     if path.stat().st_size < 500_000:
         return path.read_bytes()
-    reduced = BytesIO()
     with Image.open(path) as picture:
-        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(reduced, "PNG", optimize=True)
+        return _reduced(picture, 256)
+
+
+def gallery(folder: Path, keys: list[str], target: Path) -> None:
+    """Copies of figures for a page: 1000 pixels wide, few colours."""
+    for key in keys:
+        with Image.open(folder / f"{key}.png") as picture:
+            scaled = picture.convert("RGB").resize((1000, round(1000 * picture.height / picture.width)))
+        (target / f"paper_{key}.png").write_bytes(_reduced(scaled, 48))
+
+
+def _reduced(picture: Image.Image, colours: int) -> bytes:
+    reduced = BytesIO()
+    picture.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(reduced, "PNG", optimize=True)
     return reduced.getvalue()
 
 

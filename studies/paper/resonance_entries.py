@@ -50,8 +50,8 @@ def figure_8(actuator: ActuatorFmu, responses: Responses, growth: list[tuple[int
             axes.plot([], [], "o", color=style.GREY, markersize=4, label="peak")
             axes.plot([], [], "|", color=style.GREY, markersize=11, markeredgewidth=1.8, label="paper's peak")
             axes.set_title(f"({letter})  {style.NAMES[parameter]}, {style.setting(S=prestress)}", loc="left")
-            axes.set(xlim=(response.omega[0], response.omega[-1]), ylim=(0.006, 5))
-            axes.legend(loc="upper center", bbox_to_anchor=(0.55, 1.03), fontsize=9)
+            axes.set(xlim=(response.omega[0], response.omega[-1]), ylim=(0.006, 20))
+            axes.legend(loc="upper right", fontsize=9)
             axes.tick_params(labelbottom=True)
         row[0].set_ylabel(r"amplitude  $\lambda_3^a$")
     for axes in rows[-1]:
