@@ -107,20 +107,22 @@ def _small(path: Path) -> bytes:
     if path.stat().st_size < 500_000:
         return path.read_bytes()
     with Image.open(path) as picture:
-        return _reduced(picture, 256)
+        return _reduced(picture)
 
 
 def gallery(folder: Path, keys: list[str], target: Path) -> None:
-    """Copies of figures for a page: 1000 pixels wide, few colours."""
+    """Copies of figures for a page: 1000 pixels wide, 256 colours."""
     for key in keys:
         with Image.open(folder / f"{key}.png") as picture:
             scaled = picture.convert("RGB").resize((1000, round(1000 * picture.height / picture.width)))
-        (target / f"paper_{key}.png").write_bytes(_reduced(scaled, 48))
+        (target / f"paper_{key}.png").write_bytes(_reduced(scaled))
 
 
-def _reduced(picture: Image.Image, colours: int) -> bytes:
+def _reduced(picture: Image.Image) -> bytes:
     reduced = BytesIO()
-    picture.convert("RGB").quantize(colours, dither=Image.Dither.NONE).save(reduced, "PNG", optimize=True)
+    # this method keeps the few pixels of a saturated colour that a thin line has
+    few = picture.convert("RGB").quantize(256, method=Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
+    few.save(reduced, "PNG", optimize=True)
     return reduced.getvalue()
 
 
