@@ -50,6 +50,8 @@ class Size:
     escape_pairs: int = 4000
     growth: tuple[int, ...] = (50, 100, 200, 400)
     dpi: int = 150
+    laid_out: bool = True
+    """Whether labels and panels make room for each other, which takes half of the drawing."""
 
 
 SMALL = Size(
@@ -67,6 +69,7 @@ SMALL = Size(
     escape_pairs=100,
     growth=(10, 20),
     dpi=50,
+    laid_out=False,
 )
 """Seconds instead of minutes, to see that everything works. Its verdicts rest on too little."""
 
@@ -170,7 +173,8 @@ def main() -> int:
         size = Size(**{**vars(size), "frequencies": arguments.frequencies})
 
     style.apply()
-    style.plt.rcParams["figure.max_open_warning"] = 0  # all are drawn at the end, by all workers
+    # all figures are drawn at the end, by all workers
+    style.plt.rcParams.update({"figure.max_open_warning": 0, "figure.constrained_layout.use": size.laid_out})
     arguments.output.mkdir(parents=True, exist_ok=True)
     start = time.perf_counter()
     progress = Progress(stages=14)
