@@ -25,7 +25,8 @@ NO_MAP = "#e9e4dc"
 
 PULL_IN_SPAN = 400.0
 """A dozen natural periods; only within about 1e-6 of a threshold is the first turn later."""
-PULL_IN_CASES = (SurfaceEffects(0.0, 0.0, 0.0, 0.0), SurfaceEffects(0.0, 0.0, 0.007, 0.0))
+IDEAL = SurfaceEffects(0.0, 0.0, 0.0, 0.0)
+PULL_IN_CASES = (IDEAL, SurfaceEffects(0.0, 0.0, 0.007, 0.0))
 
 ESCAPE_SPAN = 1000.0
 """About 40 natural periods."""
@@ -206,7 +207,7 @@ def _redundancy(actuator: ActuatorFmu) -> list[Row]:
 
 
 PERIOD_CASES = (
-    SurfaceEffects(0.0, 0.0, 0.0, 0.0),
+    IDEAL,
     SurfaceEffects(0.1, 0.0, 0.0, 0.0),
     SurfaceEffects(0.0, 0.1, 0.0, 0.0),
     SurfaceEffects(0.0, 0.0, 0.015, 0.0),
@@ -400,7 +401,7 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
                 "actuator "
                 f"escapes, near the harmonic resonance from φ̄ₐ = {lowest:.2f} on (ideal actuator, t ≤ "
                 f"{ESCAPE_SPAN:g}), below "
-                "the DC threshold of 0.647. With a little surface tension the paper's own amplitude is enough: γ̄ₛ = "
+                f"the DC threshold of {equation.threshold(IDEAL).phi:.3f}. With a little surface tension the paper's own amplitude is enough: γ̄ₛ = "
                 "Ēₛ = 0, "
                 f"τ̄ₛ = 0.02, φ̄ₐ = 0.3, ω̄ = 0.117 passes λ = 10 at t = {late:.2f}.",
             )

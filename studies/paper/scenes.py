@@ -7,15 +7,12 @@ from dataclasses import dataclass
 
 from references import SurfaceEffects
 
-SURFACE_PARAMETERS = ("gamma_s", "tau_s", "E_s")
 REFERENCE = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 """What the two parameters that are not varied are held at, in Figs. 2, 3, 8 to 12 and Tables 2 to 4."""
 VALUES = {"gamma_s": (0.0, 0.05, 0.1), "tau_s": (0.0, 0.05, 0.1), "E_s": (0.0, 0.2, 0.4)}
 PRESTRESSES = (0.0, 0.5)
 PHI_AC = 0.3
 C = 100.0
-NATURAL_PERIOD = 25.65
-"""2π√(c/6): small oscillations without surface effects and voltage; a scale for steps and windows."""
 
 BRANCHES = ("harmonic", "subharmonic", "superharmonic")
 """The paper's names. The voltage enters as φ², so that the forcing has frequency 2ω: harmonic is 2ω near the

@@ -11,6 +11,7 @@ import references
 from actuator_fmu import ActuatorFmu
 from comparison import Row
 from references import SurfaceEffects
+from scipy.optimize import brentq
 
 from paper import equation
 from paper.entries import Claim, Entry, draw_table, long_format
@@ -66,6 +67,7 @@ def table_1(actuator: ActuatorFmu) -> Entry:
             for kind, value in (("paper", row.printed), ("exact", row.exact), ("fmu", row.measured)):
                 columns.setdefault(f"{label}_{kind}", []).append(value)
     wrong = [row for row in rows if row.misprinted]
+    spurious, _ = equation.extrema(alone("E_s", 0.007))[1]
     # the ideal row stands three times in the paper's table
     entries = len(rows) + 4
     return Entry(
@@ -86,7 +88,8 @@ def table_1(actuator: ActuatorFmu) -> Entry:
         remarks=[
             "The exact values are multiprecision roots of Eqs. 19 and 20. These equations have further roots that are "
             "no thresholds: λ = 1 always, and for 0 < Ēₛ < E* the local minimum of the stagnation curve "
-            "(Ēₛ = 0.007: φ̄ = 0.53502, λ₃ = 0.09687). A root finder started there would report them.",
+            f"(Ēₛ = 0.007: φ̄ = {spurious.phi:.5f}, λ₃ = {spurious.lambda3:.5f}). A root finder started there would "
+            "report them.",
         ],
     )
 
@@ -108,8 +111,8 @@ def figure_4(actuator: ActuatorFmu) -> Entry:
             fold = own_threshold(actuator, case)
             if fold.exists:
                 axes.plot(fold.lambda3, fold.phi, "x", color=style.BLACK, markersize=8, zorder=5)
-            for row in _overshoots(actuator, case, fold, f"{parameter} = {value:g}"):
-                axes.plot(row.measured, float(row.quantity.split("phi = ")[1]), ".", markersize=6, **look)
+            for phi, row in _overshoots(actuator, case, fold, f"{parameter} = {value:g}"):
+                axes.plot(row.measured, phi, ".", markersize=6, **look)
                 worst = row if worst is None or abs(row.difference) > abs(worst.difference) else worst
         rows.append(worst)
         axes.set_title(f"({letter})  {style.NAMES[parameter]}", loc="left")
@@ -148,20 +151,25 @@ def _branches(case: SurfaceEffects) -> np.ndarray:
     return curve
 
 
-def _overshoots(actuator: ActuatorFmu, case: SurfaceEffects, fold: references.PullIn, name: str) -> list[Row]:
-    """Smallest λ₃ of runs from rest, against the root of Eq. 19 that the motion meets first."""
+def _overshoots(
+    actuator: ActuatorFmu, case: SurfaceEffects, fold: references.PullIn, name: str
+) -> list[tuple[float, Row]]:
+    """Voltage and smallest λ₃ of runs from rest, against the root of Eq. 19 that the motion meets first."""
     one = equation.Cases.of([case])
-    rest = math.sqrt(max(0.0, float(2 * (case.gamma_s + case.tau_s))))
-    highest = fold.phi if fold.exists else 0.85
-    rows = []
+    lowest_voltage = math.sqrt(2 * (case.gamma_s + case.tau_s))  # below it the actuator contracts
+    highest_voltage, farthest = (fold.phi, fold.stretch) if fold.exists else (0.85, 4.0)
+    found = []
     for share in (0.3, 0.6, 0.85, 0.97):
-        phi = round(rest + share * (highest - rest), 4)
-        (lowest, _), *_ = ranges(actuator, case.scene(phi=phi), (150.0,), TOLERANCE)
-        stretch = equation.brentq(
-            lambda x: float(one.stagnation(x)[0]) - phi**2, 1 + 1e-9, fold.stretch if fold.exists else 4.0, xtol=1e-15
-        )
-        rows.append(Row(f"{name}: lambda3m at phi = {phi:g}", None, stretch**-2, lowest))
-    return rows
+        phi = round(lowest_voltage + share * (highest_voltage - lowest_voltage), 4)
+        ((lowest, _),) = ranges(actuator, case.scene(phi=phi), (150.0,), TOLERANCE)
+        stretch = brentq(_excess, 1 + 1e-9, farthest, args=(one, phi), xtol=1e-15)
+        found.append((phi, Row(f"{name}: lambda3m at phi = {phi:g}", None, stretch**-2, lowest)))
+    return found
+
+
+def _excess(stretch: float, case: equation.Cases, phi: float) -> float:
+    """φ² of the stagnation curve over that of the run."""
+    return float(case.stagnation(stretch)[0]) - phi**2
 
 
 def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
@@ -172,15 +180,20 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
     for index, parameter in enumerate(VALUES):
         end = vanishing.E_s if parameter == "E_s" else 0.1
         # the fold's stretch runs into E* like a root: points crowd towards the end
-        values = end * (1 - np.linspace(1, 0, points, endpoint=False)[::-1] ** 2)[::-1][: points - 1]
-        values = np.unique(np.concatenate([[0.0], values]))
+        values = end * (1 - np.linspace(1, 0, points, endpoint=False) ** 2)
         found = [own_threshold(actuator, alone(parameter, value)) for value in values]
-        exact = [equation.threshold(alone(parameter, value)) for value in values[:: max(1, points // 20)]]
+        some = range(0, points, max(1, points // 20))
         for quantity in ("phi", "lambda3"):
-            pairs = list(zip(values[:: max(1, points // 20)], exact, found[:: max(1, points // 20)]))
-            value, one, other = max(pairs, key=lambda p: abs(getattr(p[1], quantity) - getattr(p[2], quantity)))
-            name = f"{quantity}^C, worst over {parameter}: at {value:.5g}"
-            rows.append(Row(name, None, getattr(one, quantity), getattr(other, quantity)))
+            checked = [
+                Row(
+                    f"{quantity}^C, worst over {parameter}: at {values[k]:.5g}",
+                    None,
+                    getattr(equation.threshold(alone(parameter, values[k])), quantity),
+                    getattr(found[k], quantity),
+                )
+                for k in some
+            ]
+            rows.append(max(checked, key=lambda row: abs(row.difference)))
         curve = np.array(
             [(v, pull_in.phi, pull_in.lambda3) for v, pull_in in zip(values, found)],
             dtype=[("value", float), ("phi_pull_in", float), ("lambda3_pull_in", float)],
@@ -198,15 +211,13 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
     star = vanishing_elasticity(actuator)
     rows.append(Row("E* from the FMU, by bisection", "0.029", vanishing.E_s, star))
     rows.append(Row("lambda3 there", None, vanishing.lambda3, own_threshold(actuator, alone("E_s", star)).lambda3))
-    for axes, field, symbol in (
-        (voltage, "phi_pull_in", "phi_pull_in"),
-        (stretch, "lambda3_pull_in", "lambda3_pull_in"),
+    for axes, field, what in (
+        (voltage, "phi_pull_in", "voltage"),
+        (stretch, "lambda3_pull_in", "thickness stretch"),
     ):
         axes.plot(star, last[field], "*", color=style.COLOURS[2], markersize=13, label=f"$E^*$ = {star:.8f}")
         axes.set_xlabel("surface parameter")
-        axes.set_ylabel(
-            f"critical {'voltage' if field == 'phi_pull_in' else 'thickness stretch'}  {style.SYMBOLS[symbol]}"
-        )
+        axes.set_ylabel(f"critical {what}  {style.SYMBOLS[field]}")
         axes.plot([], [], label="Table 1, as printed", **style.EXACT)
         axes.legend()
     voltage.set_title("(a)", loc="left")
