@@ -22,7 +22,7 @@ import numpy as np
 from actuator_fmu import DEFAULT_FMU, ActuatorFmu
 from progress import Progress
 
-from paper import chaos, dc, driven, maps, report, resonance, resonance_entries, slips, thresholds
+from paper import chaos, dc, driven, escape, maps, report, resonance, resonance_entries, slips, thresholds
 from paper.entries import Entry
 from paper.scenes import BRANCHES, printed_resonances
 from paper.workers import Workers
@@ -147,7 +147,7 @@ def study(workers: Workers, progress: Progress, size: Size) -> list[Entry]:
     with progress.stage("beyond the paper: period at pull-in"):
         entries.append(maps.period_curve(workers, size.period_points))
     with progress.stage("beyond the paper: escape under the harmonic drive"):
-        entries.append(maps.escape_map(workers, size.escape_cells, size.escape_pairs))
+        entries.append(escape.escape_map(workers, size.escape_cells, size.escape_pairs))
     return entries
 
 

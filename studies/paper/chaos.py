@@ -10,6 +10,7 @@ import numpy as np
 import turning_points
 from actuator_fmu import ActuatorFmu
 from comparison import Row
+from matplotlib.axes import Axes
 from references import SurfaceEffects
 
 from paper.entries import Claim, Entry, Grid
@@ -103,8 +104,7 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
         f"No run of the paper is chaotic or aperiodic: at t = {window:g} MEGNO lies between {last.min():.2f} and "
         f"{last.max():.2f} for all {len(runs)} of them and the exponents are at most "
         f"{np.abs(indicators.exponent[:, -1]).max() / law:.1f} ln t / t and fall like it. For three chaotic motions "
-        "of the "
-        f"same equation MEGNO has grown to {last_chaotic.min():.1f} and more by t = {chaotic.times[-1]:g}."
+        f"of the same equation MEGNO has grown to {last_chaotic.min():.1f} and more by t = {chaotic.times[-1]:g}."
     )
     names = [run.regime for run in runs] + ["chaotic"] * len(CHAOTIC)
     return Entry(
@@ -137,10 +137,9 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
         ],
         remarks=[
             "Computed without the FMU: Eq. 16 as printed with its exact variational equations, DOP853. Its λ is held "
-            "against "
-            "the FMU's at the same times (the worst of all runs is in the table).",
-            "MEGNO tends to 2 on a torus, from below where the frequency hardly depends on the amplitude, and grows in "
-            "proportion to t in chaos.",
+            "against the FMU's at the same times (the worst of all runs is in the table).",
+            "MEGNO tends to 2 on a torus, from below where the frequency hardly depends on the amplitude, and grows "
+            "in proportion to t in chaos.",
         ],
     )
 
@@ -191,23 +190,11 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
     }
     cells = []
     for index, loose in enumerate(shown):
-        run = loose.run
-        points = len(loose.section)
-        section = actuator.run(
-            run.scene(),
-            stop_time=points * run.forcing_period,
-            communication_step=run.forcing_period,
-            outputs=("lambda3", "lambda3_dot"),
-            tolerance=TOLERANCE,
-        )
-        (exact_amplitude[run],) = amplitudes(actuator, run.scene(), (window,), TOLERANCE)
+        (exact_amplitude[loose.run],) = amplitudes(actuator, loose.run.scene(), (window,), TOLERANCE)
         axes = figure.add_subplot(grid[1 + index // 3, index % 3])
-        axes.plot(loose.section[:, 0], loose.section[:, 1], ".", color=style.COLOURS[1], markersize=3)
-        axes.plot(section["lambda3"], section["lambda3_dot"], ".", color=style.COLOURS[0], markersize=3)
-        style.label(axes, "lambda3", "lambda3_dot")
-        parameter = list(EXTREME)[index % 3]
-        setting = style.setting(**{parameter: EXTREME[parameter], "omega_ac": run.omega})
-        axes.set_title(f"({'cdefgh'[index]})  {run.regime}, {setting}", loc="left", fontsize=10)
+        _overlay(axes, actuator, loose)
+        setting = style.setting(**_extreme(loose.run), omega_ac=loose.run.omega)
+        axes.set_title(f"({'cdefgh'[index]})  {loose.run.regime}, {setting}", loc="left", fontsize=10)
     history = figure.add_subplot(grid[0, :2])
     history.plot(*ladder[0].history.T, color=style.COLOURS[1], linewidth=0.5)
     ours = actuator.run(
@@ -232,7 +219,7 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
         f"The same motion at the tolerance of a default 4(5) solver and at 1e-12, t ≤ {window:g}; sections at kπ/ω"
     )
     for loose in found:
-        parameter = next(p for p in EXTREME if getattr(loose.run.case, p) == EXTREME[p])
+        (parameter,) = _extreme(loose.run)
         line = (loose.run.regime, parameter, loose.run.omega, loose.rtol, loose.amplitude, exact_amplitude[loose.run])
         for name, value in zip(columns, line):
             columns[name].append(value)
@@ -247,20 +234,35 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
         ],
         remarks=[
             "RK45 is SciPy's; its pair of formulas (Dormand and Prince) is that of MATLAB's ode45, which the paper "
-            "used, with "
-            f"ode45's default tolerances {ODE45_RTOL:g} and {ODE45_ATOL:g}. The paper prints no tolerances, so that "
-            "this shows a "
-            "likely cause, not a proven one; step control differs in detail between the two.",
-            f"At that tolerance the harmonic run for γ̄ₛ = 0.1 reaches an amplitude of {ladder[0].amplitude:.3f} by "
-            f"t = {window:g}, "
-            f"where the exact one is {exact:.4f}; its section is scattered, as in the paper's Fig. 9. With closer "
-            "tolerances "
-            "RK45 converges to the FMU (panel b). Scatter that goes away with the tolerance is an error of "
-            "integration.",
+            f"used, with ode45's default tolerances {ODE45_RTOL:g} and {ODE45_ATOL:g}. The paper prints no "
+            "tolerances, so that this shows a likely cause, not a proven one; step control differs in detail between "
+            "the two.",
+            f"At that tolerance the harmonic run for γ̄ₛ = 0.1 reaches an amplitude of {ladder[0].amplitude:.3f} by t "
+            f"= {window:g}, where the exact one is {exact:.4f}; its section is scattered, as in the paper's Fig. 9. "
+            "With closer tolerances RK45 converges to the FMU (panel b). Scatter that goes away with the tolerance "
+            "is an error of integration.",
             "At the superharmonic two things keep a section from closing: the slow modulation has not come round by "
-            f"t = {window:g} "
-            "even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the default tolerance "
-            "the motion "
-            "drifts off its curve.",
+            f"t = {window:g} even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the "
+            "default tolerance the motion drifts off its curve.",
         ],
     )
+
+
+def _overlay(axes: Axes, actuator: ActuatorFmu, loose: Loose) -> None:
+    """The section of a loose run, and over it that of the FMU at the same times."""
+    period = loose.run.forcing_period
+    section = actuator.run(
+        loose.run.scene(),
+        stop_time=len(loose.section) * period,
+        communication_step=period,
+        outputs=("lambda3", "lambda3_dot"),
+        tolerance=TOLERANCE,
+    )
+    axes.plot(loose.section[:, 0], loose.section[:, 1], ".", color=style.COLOURS[1], markersize=3)
+    axes.plot(section["lambda3"], section["lambda3_dot"], ".", color=style.COLOURS[0], markersize=3)
+    style.label(axes, "lambda3", "lambda3_dot")
+
+
+def _extreme(run: DrivenRun) -> dict[str, float]:
+    """The surface parameter that has its largest value in a run of Figs. 9 to 12."""
+    return {name: value for name, value in EXTREME.items() if getattr(run.case, name) == value}

@@ -120,8 +120,8 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
             "Past the threshold the motion is aperiodic and its phase trajectory open.",
             None if slow["lambda3"][-1] > 0.2 else True,
             "Holds without surface elasticity: the motion escapes in finite time. With it the motion goes on along a "
-            "larger "
-            f"closed orbit and is periodic again (Ēₛ = 0.007: λ₃ falls to {slow['lambda3'].min():.4f} and comes back).",
+            f"larger closed orbit and is periodic again (Ēₛ = 0.007: λ₃ falls to {slow['lambda3'].min():.4f} and "
+            "comes back).",
         ),
     ]
     entries[1].claims = [
@@ -129,10 +129,8 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
             "Dynamic pull-in is a saddle-node bifurcation.",
             False,
             "At the threshold the orbit from rest is homoclinic to a saddle point (crosses), which exists on both "
-            "sides of "
-            "the threshold. The saddle-node, where two equilibria merge, is the static pull-in at a higher voltage. "
-            "The "
-            "growth of the period tells the two apart (see the period over voltage).",
+            "sides of the threshold. The saddle-node, where two equilibria merge, is the static pull-in at a higher "
+            "voltage. The growth of the period tells the two apart (see the period over voltage).",
         )
     ]
     return entries

@@ -120,8 +120,7 @@ def _draw(number: str, regime: str, prestress: float, motions: dict[str, Motion]
     if regime == NEAR_RESONANT:
         remarks.append(
             f"The paper does not give the frequencies; here they are {DETUNING:g} of the harmonic resonances printed "
-            "in "
-            "Tables 2 to 4."
+            "in Tables 2 to 4."
         )
     dimensions = [dimension(motion.section[1:]) for motion in motions.values()]
     cells = [

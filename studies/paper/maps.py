@@ -1,5 +1,4 @@
-"""Beyond the paper: pull-in over voltage and prestress, thresholds over the surface parameters, the period at
-pull-in, and escape under the harmonic drive."""
+"""Beyond the paper: pull-in over voltage and prestress, thresholds over the surface parameters, period at pull-in."""
 
 from __future__ import annotations
 
@@ -14,7 +13,7 @@ from matplotlib.colors import LogNorm
 from references import SurfaceEffects
 
 from paper import equation
-from paper.entries import Claim, Entry, Grid, stack
+from paper.entries import Claim, Entry, stack
 from paper.workers import Workers
 
 TOLERANCE = 1e-9
@@ -27,13 +26,6 @@ PULL_IN_SPAN = 400.0
 """A dozen natural periods; only within about 1e-6 of a threshold is the first turn later."""
 IDEAL = SurfaceEffects(0.0, 0.0, 0.0, 0.0)
 PULL_IN_CASES = (IDEAL, SurfaceEffects(0.0, 0.0, 0.007, 0.0))
-
-ESCAPE_SPAN = 1000.0
-"""About 40 natural periods."""
-ESCAPE_WINDOWS = (((0.02, 0.35), (0.4, 1.0)), ((0.085, 0.115), (0.45, 0.75)), ((0.093, 0.0985), (0.485, 0.53)))
-"""ω and φ_a of the map and of two zooms into its edge."""
-SLOW_ESCAPE = {"tau_s": 0.02, "phi_ac": 0.3, "omega_ac": 0.117}
-"""Escapes at the paper's amplitude, though at none of its parameter sets."""
 
 
 def pull_in_row(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, np.ndarray]) -> np.ndarray:
@@ -107,18 +99,15 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
         columns,
         remarks=[
             f"{2 * voltages.size * prestresses.size} runs, each of one communication step with recorded extremes. "
-            "Without surface "
-            f"elasticity (left) the motion collapses in the very cells beyond the FMU's phi_pull_in: {total - wrong} "
-            f"of {total} "
-            "agree"
+            "Without surface elasticity (left) the motion collapses in the very cells beyond the FMU's phi_pull_in: "
+            f"{total - wrong} of {total} agree"
             + (
                 "."
                 if wrong == 0
                 else f"; the other {wrong} lie next to the threshold, where the escape takes longer than the run."
             ),
             "With surface elasticity (right) nothing collapses where the larger orbit stays within lambda_max = 10: "
-            "past the "
-            "threshold λ₃ jumps to a few hundredths and the motion stays periodic.",
+            "past the threshold λ₃ jumps to a few hundredths and the motion stays periodic.",
         ],
     )
 
@@ -187,9 +176,8 @@ def threshold_map(workers: Workers, cells: int) -> Entry:
         remarks=[
             f"{3 * cells * cells} thresholds, from the variable phi_pull_in.",
             "γ̄ₛ and τ̄ₛ act through their difference but for a shift of the voltage: (γ̄ₛ, τ̄ₛ, φ̄²) moves exactly "
-            "like (γ̄ₛ − τ̄ₛ, 0, "
-            "φ̄² − 4τ̄ₛ). Hence one map over γ̄ₛ − τ̄ₛ and Ēₛ holds them all, and E* depends on γ̄ₛ − τ̄ₛ alone. The "
-            "table checks it.",
+            "like (γ̄ₛ − τ̄ₛ, 0, φ̄² − 4τ̄ₛ). Hence one map over γ̄ₛ − τ̄ₛ and Ēₛ holds them all, and E* depends on "
+            "γ̄ₛ − τ̄ₛ alone. The table checks it.",
         ],
     )
 
@@ -282,128 +270,8 @@ def period_curve(workers: Workers, points: int) -> Entry:
             )
         ],
         remarks=[
-            "The period grows like −ln(φ̄ᶜ − φ̄)/σ with σ the rate of the saddle: the "
-            "mark of a homoclinic orbit. At a saddle-node it would grow like a power of the distance. Exact: 1/σ "
-            "from Eq. 16 "
-            "linearised at the threshold; FMU: slope fitted for distances of 1e-10 to 1e-5.",
-        ],
-    )
-
-
-def escape_row(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> np.ndarray:
-    """For one φ_a and each ω the instant of escape of the ideal actuator, +inf if not within `ESCAPE_SPAN`."""
-    phi_ac, omegas = item
-    found = np.empty(len(omegas))
-    for index, omega in enumerate(omegas):
-        actuator.start({"phi_ac": phi_ac, "omega_ac": omega}, tolerance=TOLERANCE)
-        actuator.advance(ESCAPE_SPAN)
-        found[index] = actuator.get("pull_in_time")
-    return found
-
-
-def uncertain(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> float:
-    """Share of the places (ω, φ_a) whose fate differs from that of the place `distance` further in φ_a."""
-    distance, places = item
-    differing = 0
-    for omega, phi_ac in places:
-        fates = [np.isfinite(escape_row(actuator, (phi, np.array([omega])))[0]) for phi in (phi_ac, phi_ac + distance)]
-        differing += fates[0] != fates[1]
-    return differing / len(places)
-
-
-def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
-    """Escape of the ideal actuator under the harmonic drive, and how its edge scales."""
-    figure, quarters = plt.subplots(2, 2, figsize=(12.5, 10))
-    panels = quarters.ravel()
-    columns: dict[str, list] = {}
-    lowest = np.inf
-    for letter, axes, ((left, right), (bottom, top)) in zip("abc", panels, ESCAPE_WINDOWS):
-        omegas, voltages = np.linspace(left, right, cells), np.linspace(bottom, top, cells)
-        found = np.array(workers.map(escape_row, [(phi, omegas) for phi in voltages]))
-        lowest = min(lowest, voltages[np.isfinite(found).any(axis=1)].min(initial=np.inf))
-        shown = axes.pcolormesh(
-            omegas,
-            voltages,
-            np.where(np.isfinite(found), found, np.nan),
-            norm=LogNorm(10, ESCAPE_SPAN),
-            cmap=CMAP,
-            rasterized=True,
-        )
-        axes.set_facecolor(NO_MAP)
-        axes.grid(False)
-        axes.set_title(f"({letter})", loc="left")
-        axes.set(
-            xlabel=f"angular frequency  {style.SYMBOLS['omega_ac']}", ylabel=f"amplitude  {style.SYMBOLS['phi_ac']}"
-        )
-        axes.locator_params(axis="x", nbins=5)
-        mesh_phi, mesh_omega = np.meshgrid(voltages, omegas, indexing="ij")
-        further = {"window": [letter] * found.size, "omega": mesh_omega.ravel(), "phi_ac": mesh_phi.ravel()}
-        columns = stack(columns, {**further, "pull_in_time": found.ravel()})
-    for axes, ((left, right), (bottom, top)) in zip(panels, ESCAPE_WINDOWS[1:]):
-        corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
-        axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
-    figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
-
-    (left, right), (bottom, top) = ESCAPE_WINDOWS[1]
-    places = np.random.default_rng(1).uniform((left, bottom), (right, top), (pairs, 2))
-    distances = 10.0 ** -np.arange(2, 8)
-    tasks = [(distance, chunk) for distance in distances for chunk in np.array_split(places, 20)]
-    shares = np.array(workers.map(uncertain, tasks)).reshape(len(distances), -1).mean(axis=1)
-    seen = shares > 0
-    exponent = (
-        float(np.polyfit(np.log(distances[seen]), np.log(shares[seen]), 1)[0]) if seen.sum() > 1 else float("nan")
-    )
-    axes = panels[3]
-    axes.loglog(distances[seen], shares[seen], "o-", color=style.COLOURS[0], label=f"slope {exponent:.2f}")
-    axes.loglog(distances, shares[0] * distances / distances[0], ":", color=style.GREY, label="slope 1: smooth edge")
-    axes.set(xlabel=r"distance in  $\bar{\phi}_a$", ylabel="share of pairs with different fates")
-    axes.set_title("(d)  in window (b)", loc="left")
-    axes.legend()
-    figure.suptitle(
-        rf"Escape of the ideal actuator from rest under $\bar\phi_a \sin\bar\omega\bar t$, t ≤ {ESCAPE_SPAN:g} "
-        r"(pale: no escape)"
-    )
-    fractal = exponent < 0.9
-    workers.actuator.start(SLOW_ESCAPE, tolerance=1e-12)
-    workers.actuator.advance(1500.0)
-    late = workers.actuator.get("pull_in_time")
-    return Entry(
-        "map_escape",
-        "Escape under the harmonic drive",
-        figure,
-        columns,
-        grids=[
-            Grid(
-                "Pairs of places with different fates, window (b)",
-                ["distance in φ_a", "share"],
-                [[f"{d:.0e}", f"{s:.2e}"] for d, s in zip(distances, shares)],
-            )
-        ],
-        remarks=[
-            f"{3 * cells * cells} runs of t ≤ {ESCAPE_SPAN:g}, one communication step each; λ = 10 counts as escape. "
-            "Panels (b) and (c) are "
-            "the frames drawn in (a) and (b).",
-            f"The edge {'is fractal' if fractal else 'shows no fractal scaling here'}: the share of places whose "
-            "fate changes within "
-            f"a distance ε falls like ε^{exponent:.2f}"
-            + (
-                ", slower than the ε of a smooth edge. There, whether the actuator survives cannot be told from "
-                "amplitude and frequency to any practical precision."
-                if fractal
-                else "."
-            ),
-        ],
-        claims=[
-            Claim(
-                "Under AC voltage all responses remain bounded.",
-                None,
-                "Holds for the parameter sets of the paper. Without surface elasticity and at higher amplitudes the "
-                "actuator "
-                f"escapes, near the harmonic resonance from φ̄ₐ = {lowest:.2f} on (ideal actuator, t ≤ "
-                f"{ESCAPE_SPAN:g}), below "
-                f"the DC threshold of {equation.threshold(IDEAL).phi:.3f}. With a little surface tension the paper's own amplitude is enough: γ̄ₛ = "
-                "Ēₛ = 0, "
-                f"τ̄ₛ = 0.02, φ̄ₐ = 0.3, ω̄ = 0.117 passes λ = 10 at t = {late:.2f}.",
-            )
+            "The period grows like −ln(φ̄ᶜ − φ̄)/σ with σ the rate of the saddle: the mark of a homoclinic orbit. At "
+            "a saddle-node it would grow like a power of the distance. Exact: 1/σ from Eq. 16 linearised at the "
+            "threshold; FMU: slope fitted for distances of 1e-10 to 1e-5.",
         ],
     )

@@ -47,11 +47,9 @@ def write(path: Path, entries: list[Entry], slips: list[Claim], facts: Facts) ->
         "<h1>Nonlinear dynamics of miniaturized dielectric elastomer actuators with surface effects, through the "
         "FMU</h1>",
         "<p>Every figure and table of A. P. Singh, G. Shmuel and A. K. Sharma's paper of that title, computed with "
-        "the packed "
-        "FMU and set beside exact values. <em>Exact</em> means: found another way than by the FMU – multiprecision "
-        "roots and "
-        "quadrature (tests/reference), or SciPy's DOP853 on Eq. 16 as printed. Fig. 1 is a drawing and has no "
-        "numbers.</p>",
+        "the packed FMU and set beside exact values. <em>Exact</em> means: found another way than by the FMU – "
+        "multiprecision roots and quadrature (tests/reference), or SciPy's DOP853 on Eq. 16 as printed. Fig. 1 is a "
+        "drawing and has no numbers.</p>",
         _facts(facts),
         "<h2 id='claims'>What holds and what does not</h2>",
         _claims([(claim, entry.key) for entry in entries for claim in entry.claims]),
@@ -78,8 +76,8 @@ def _claims(claims: list[tuple[Claim, str | None]]) -> str:
         look, word = looks[claim.holds]
         where = f" <a href='#{key}'>evidence</a>" if key else ""
         rows.append(
-            f"<tr><td>{escape(claim.statement)}</td><td class='{look}'>{word}</td>"
-            f"<td>{escape(claim.finding)}{where}</td></tr>"
+            f"<tr><td>{escape(claim.statement)}</td><td "
+            f"class='{look}'>{word}</td><td>{escape(claim.finding)}{where}</td></tr>"
         )
     header = "<tr><th>The paper</th><th>Verdict</th><th>Found</th></tr>"
     return f"<div class='wide'><table class='claims'>{header}{''.join(rows)}</table></div>"

@@ -299,10 +299,10 @@ def window_comparison(responses: Responses) -> Entry:
         columns,
         grids=[Grid("Paper against the peaks of each window", ["branch", "T", "RMS", "worst", "to 4 digits"], cells)],
         remarks=[
-            f"No one window gives the printed numbers. T = {best:g} is nearest: RMS {rms:.1e}, worst {worst:.1e}, that "
-            f"is {100 * rms / mean:.1f} % of the mean frequency; at most {max(hits)} of {entries} entries agree to "
-            "their four digits at once. The paper states no window, frequency step or tolerance, so that its numbers "
-            "cannot be obtained again; they hold to about 1 %.",
+            f"No one window gives the printed numbers. T = {best:g} is nearest: RMS {rms:.1e}, worst {worst:.1e}, "
+            f"that is {100 * rms / mean:.1f} % of the mean frequency; at most {max(hits)} of {entries} entries agree "
+            "to their four digits at once. The paper states no window, frequency step or tolerance, so that its "
+            "numbers cannot be obtained again; they hold to about 1 %.",
             "The sub- and superharmonic peaks drift with T, since nothing is damped. The harmonic peak is a jump, "
             f"settled by T = {settled:g} (it moves by at most {moved:.0e} until T = {windows[-1]:g}), and its printed "
             f"places are off all the same, by up to {off:.1e}.",

@@ -34,8 +34,7 @@ def slips() -> list[Claim]:
             "Below Eq. 7: the through-thickness inertia is negligible.",
             None,
             "Eqs. 14 and 16 keep it all the same (2λ⁻⁶ beside c), and so does the FMU. It makes the period of the "
-            "reference "
-            f"motion of Fig. 2 {100 * thickness_inertia():.2f} % longer at c = 100.",
+            f"reference motion of Fig. 2 {100 * thickness_inertia():.2f} % longer at c = 100.",
         ),
         Claim(
             "Eq. 12: the work of the in-plane forces is −2P(λ − 1).",

@@ -86,10 +86,10 @@ def table_1(actuator: ActuatorFmu) -> Entry:
             )
         ],
         remarks=[
-            "The exact values are multiprecision roots of Eqs. 19 and 20. These equations have further roots that are "
-            "no thresholds: λ = 1 always, and for 0 < Ēₛ < E* the local minimum of the stagnation curve "
-            f"(Ēₛ = 0.007: φ̄ = {spurious.phi:.5f}, λ₃ = {spurious.lambda3:.5f}). A root finder started there would "
-            "report them.",
+            "The exact values are multiprecision roots of Eqs. 19 and 20. These equations have further roots that "
+            "are no thresholds: λ = 1 always, and for 0 < Ēₛ < E* the local minimum of the stagnation curve (Ēₛ = "
+            f"0.007: φ̄ = {spurious.phi:.5f}, λ₃ = {spurious.lambda3:.5f}). A root finder started there would report "
+            "them.",
         ],
     )
 
@@ -234,15 +234,13 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
                 "Pull-in is eliminated for Ēₛ > 0.029.",
                 None,
                 f"It vanishes at E* = {vanishing.E_s:.10f}, which the paper rounds down; Table 1 itself has a "
-                "threshold at "
-                "0.029. E* depends on γ̄ₛ − τ̄ₛ and on S̄.",
+                "threshold at 0.029. E* depends on γ̄ₛ − τ̄ₛ and on S̄.",
             )
         ],
         remarks=[
             "FMU: its variables phi_pull_in and lambda3_pull_in. Exact: roots of Eqs. 19 and 20 found from the "
-            "equations "
-            "as printed, without the FMU; E* in multiprecision. The stretch at E* hangs on E* like a root, so that the "
-            "last digit of E* shows in its seventh.",
+            "equations as printed, without the FMU; E* in multiprecision. The stretch at E* hangs on E* like a root, "
+            "so that the last digit of E* shows in its seventh.",
         ],
     )
 

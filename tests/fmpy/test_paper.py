@@ -12,7 +12,7 @@ import figure_style as style
 import numpy as np
 import pytest
 import references
-from paper import chaos, driven, equation, maps, resonance, resonance_entries, scenes, slips, thresholds
+from paper import chaos, driven, equation, escape, maps, resonance, resonance_entries, scenes, slips, thresholds
 from paper.independent import DrivenRuns, embedded_pair
 from paper.resonance import Peak
 from paper.thickness_range import amplitudes, ranges
@@ -199,7 +199,7 @@ def test_pull_in_map_agrees_with_the_threshold_variable(actuator):
 
 
 def test_escape_under_the_drive_is_that_of_a_single_run(actuator):
-    early, never = maps.escape_row(actuator, (0.7, np.array([0.06, 0.3])))
+    early, never = escape.escape_row(actuator, (0.7, np.array([0.06, 0.3])))
     response = actuator.run(
         {"phi_ac": 0.7, "omega_ac": 0.06}, stop_time=early + 1, communication_step=0.5, outputs=["lambda", "pulled_in"]
     )
