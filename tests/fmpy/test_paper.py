@@ -201,10 +201,21 @@ def test_pull_in_map_agrees_with_the_threshold_variable(actuator):
 def test_escape_under_the_drive_is_that_of_a_single_run(actuator):
     early, never = escape.escape_row(actuator, (0.7, np.array([0.06, 0.3])))
     response = actuator.run(
-        {"phi_ac": 0.7, "omega_ac": 0.06}, stop_time=early + 1, communication_step=0.5, outputs=["lambda", "pulled_in"]
+        {"phi_ac": 0.7, "omega_ac": 0.06, **escape.LIMITS},
+        stop_time=early + 1,
+        communication_step=0.5,
+        outputs=["lambda", "pulled_in"],
     )
     assert response["time"][response["pulled_in"]][0] == pytest.approx(early, abs=0.5)
     assert never == math.inf
+
+
+def test_a_motion_that_comes_back_from_ten_is_no_escape_yet(actuator):
+    passed = {name: value for name, value in escape.SLOW_ESCAPE.items() if name not in escape.LIMITS}
+    for scene, instant in ((passed, 927.44966491), (escape.SLOW_ESCAPE, 1251.031)):  # DOP853 at 1e-13
+        actuator.start(scene, tolerance=allowed.TOLERANCE)
+        actuator.advance(1500.0)
+        assert actuator.get("pull_in_time") == pytest.approx(instant, abs=1e-3)
 
 
 def test_thickness_inertia_is_a_percent_or_so():
