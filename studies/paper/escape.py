@@ -123,8 +123,8 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
                 "Holds for the parameter sets of the paper. Without surface elasticity and at higher amplitudes the "
                 f"actuator escapes, near the harmonic resonance from φ̄ₐ = {lowest:.2f} on (ideal actuator, t ≤ "
                 f"{SPAN:g}), below the DC threshold of {threshold(IDEAL).phi:.3f}. With a little surface tension the "
-                "paper's own amplitude is enough: γ̄ₛ = Ēₛ = 0, τ̄ₛ = 0.02, φ̄ₐ = 0.3, ω̄ = 0.117 passes λ = 10 at t "
-                f"= {late:.2f}.",
+                "paper's own amplitude is enough: γ̄ₛ = Ēₛ = 0, τ̄ₛ = 0.02, φ̄ₐ = 0.3, ω̄ = 0.117 escapes at "
+                f"t = {late:.2f}.",
             )
         ],
         remarks=[
