@@ -401,3 +401,26 @@ fn strides_end_where_substeps_do() {
         }
     }
 }
+
+/// Within rounding of an equilibrium nothing changes in the sweeps, which must
+/// not be taken for an iteration that converges slowly.
+#[test]
+fn a_motion_next_to_rest_goes_on() {
+    let coefficients = coefficients(100.0, [0.05, 0.05, 0.0]);
+    let start = State {
+        position: 1.060_000_000_000_000_3,
+        rate: 1.267_592_835_769_656_6e-17,
+    };
+    for ulps in 0..200 {
+        let voltage = f64::from_bits(0.510_955_419_527_634_8_f64.to_bits() + ulps);
+        let motion = Motion {
+            coefficients,
+            drive: Drive::constant(voltage, 0.240_000_000_000_000_4),
+        };
+        for tolerance in [1e-6, 1e-10, 1e-14] {
+            let mut trajectory = Trajectory::new(start, Double::ZERO, LIMITS, tolerance);
+            advance(&mut trajectory, &motion, 30.0);
+            assert!((trajectory.position() - start.position).abs() < 1e-9);
+        }
+    }
+}

@@ -219,7 +219,8 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
                 || change * expected <= settled * (1.0 - expected)
                 || (sweeps > 4 && change >= last_change && change <= 16.0 * rounding);
             if sweeps == 2 && done {
-                contraction = expected;
+                // A change that is nothing but rounding tells nothing of it.
+                contraction = if change <= rounding { 0.0 } else { expected };
             } else if sweeps > 2 && !(done && ratio > 1.0) {
                 contraction = contraction.max(ratio);
             }

@@ -142,7 +142,11 @@ fn legal_values_however_extreme_give_a_step_or_a_reason() {
                     assert!(!fault.text.is_empty() && !fault.text.contains("NaN"));
                     discarded += 1;
                     let reached = slave.last_successful_time();
-                    assert!(reached >= current && reached <= current + step * (1.0 + 1e-9));
+                    assert!(
+                        reached >= current && reached <= current + step * (1.0 + 1e-9),
+                        "{reached:e} from {current:e}: {} {history:?}",
+                        fault.text
+                    );
                     break;
                 }
             }

@@ -221,8 +221,11 @@ impl Trajectory {
                 self.arrive(at);
                 return Ok(Progress::Stopped { limit, after });
             }
-            if self.pieces.count() > 0 && target.since(self.end()) <= 0.0 {
-                self.arrive(target);
+            if target.since(self.end()) <= 0.0 {
+                // Without a piece, strides came to it but for the last bits of the time.
+                if self.pieces.count() > 0 {
+                    self.arrive(target);
+                }
                 return Ok(Progress::Whole);
             }
             if budget == 0 {
