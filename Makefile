@@ -6,6 +6,8 @@ VENV := .venv
 PYTHON_IN_VENV := $(VENV)/bin/python
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
+EXAMPLES_INSTALLED := $(VENV)/installed-examples
+EXAMPLES = sweep/pull_in_map sweep/frequency_response sweep/rates
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -19,10 +21,11 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all guide test test-platforms stress bench env clean
+.PHONY: help run fmu fmu-all guide examples test test-platforms stress bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
+	@echo 'make examples  run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
 	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
@@ -50,7 +53,13 @@ guide: $(INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu guide
 
-test: $(INSTALLED)
+examples: fmu $(EXAMPLES_INSTALLED)
+	@rm -rf target/examples
+	@for example in $(EXAMPLES); do \
+	printf '\n==> examples/%s.py\n' $$example; \
+	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
+
+test: $(INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Format)
 	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
 	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
@@ -101,4 +110,9 @@ $(INSTALLED): requirements.txt
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the benchmark)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement benchmark/requirements.txt
+	@touch $@
+
+$(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of the examples)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement examples/requirements.txt
 	@touch $@

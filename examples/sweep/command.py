@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from sweep import DEFAULT_FMU, grid, sweep  # first, since it makes the studies importable
+from sweep import DEFAULT_FMU, AnotherSweep, Unfinished, grid, sweep  # first, since it makes the studies importable
 
 import figure_style as style
 from scenes import Measure
@@ -31,14 +32,17 @@ def parse(description: str, **counts: int) -> argparse.Namespace:
 
 def run(arguments: argparse.Namespace, measure: Measure, axes: dict[str, Sequence[float]], name: str) -> pa.Table:
     """Run the sweep of the grid over `axes` into the Parquet file `name` of the output folder."""
-    return sweep(
-        measure,
-        grid(**axes),
-        arguments.output / f"{name}.parquet",
-        scheduler=arguments.scheduler,
-        workers=arguments.workers,
-        fmu=arguments.fmu,
-    )
+    try:
+        return sweep(
+            measure,
+            grid(**axes),
+            arguments.output / f"{name}.parquet",
+            cluster=arguments.scheduler,
+            workers=arguments.workers,
+            fmu=arguments.fmu,
+        )
+    except (AnotherSweep, Unfinished) as reason:
+        sys.exit(f"error: {reason}")
 
 
 def column(table: pa.Table, name: str) -> np.ndarray:

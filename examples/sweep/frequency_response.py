@@ -21,13 +21,13 @@ import figure_style as style
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIME = 2000.0
 AMPLITUDE = rf"amplitude of {style.SYMBOLS['lambda3']}"
-CURVES = 4
-"""How many of the amplitudes are drawn as curves too."""
+CURVES = (0.4, 0.3, 0.2, 0.1)
+"""Amplitudes of the voltage that are drawn as curves too."""
 
 
 def main() -> None:
     """Run the sweep, then draw it."""
-    arguments = parse(__doc__, amplitudes=48, frequencies=700)
+    arguments = parse(__doc__, amplitudes=39, frequencies=900)
     axes = {
         "phi_ac": np.linspace(0.02, 0.4, arguments.amplitudes),
         "omega_ac": np.linspace(0.03, 0.33, arguments.frequencies),
@@ -46,17 +46,20 @@ def draw(table: pa.Table) -> Figure:
     image = map_axes.imshow(
         found, origin="lower", extent=extent, aspect="auto", interpolation="nearest", cmap="viridis", norm="log"
     )
-    figure.colorbar(image, ax=map_axes, label=AMPLITUDE, pad=0.01)
+    bar = figure.colorbar(image, ax=map_axes, label=AMPLITUDE, pad=0.01)
+    for set_formatter in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
+        set_formatter("{x:g}")
     map_axes.set_ylabel(f"voltage amplitude  {style.SYMBOLS['phi_ac']}")
     map_axes.grid(False)
     title = f"(a)  {style.setting(**SURFACE_EFFECTS)}, {style.SYMBOLS['time']} $\\leq$ {STOP_TIME:g}: {len(table)} scenes"
     map_axes.set_title(title, loc="left")
-    for index, row in enumerate(np.linspace(len(amplitudes) - 1, 0, CURVES + 1).astype(int)[:CURVES]):
+    for index, amplitude in enumerate(CURVES):
+        row = int(np.argmin(np.abs(amplitudes - amplitude)))
         label = style.setting(phi_ac=amplitudes[row])
         curve_axes.plot(frequencies, found[row], label=label, linewidth=1.1, color=style.COLOURS[index])
     curve_axes.set(yscale="log", xlabel=f"angular frequency  {style.SYMBOLS['omega_ac']}", ylabel=AMPLITUDE)
     curve_axes.set_title("(b)  some rows of (a)", loc="left")
-    curve_axes.legend(loc="upper left", ncols=2)
+    curve_axes.legend(loc="upper right")
     return figure
 
 

@@ -19,11 +19,10 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 from command import column, parse
-from distributed import LocalCluster
 from fmpy import simulate_fmu
 from matplotlib.figure import Figure
 from scenes import frequency_response
-from sweep import grid, sweep
+from sweep import grid, local_cluster, sweep
 
 import figure_style as style
 from actuator_fmu import ActuatorFmu
@@ -42,7 +41,8 @@ def main() -> None:
     for stop_time in STOP_TIMES:
         # long scenes need no more of them to be timed
         count = max(PLAIN, int(arguments.scenes * min(1.0, 4000.0 / stop_time)))
-        scenes = grid(phi_ac=[0.3], omega_ac=np.linspace(0.03, 0.33, count), **{k: [v] for k, v in SURFACE_EFFECTS.items()})
+        surface_effects = {name: [value] for name, value in SURFACE_EFFECTS.items()}
+        scenes = grid(phi_ac=[0.3], omega_ac=np.linspace(0.03, 0.33, count), **surface_effects)
         for way, rate in rates(arguments.fmu, scenes, stop_time, most):
             print(f"t <= {stop_time:<6g} {way:<24} {rate:>10.1f} scenes a second", flush=True)
             rows.append({"stop_time": stop_time, "way": way, "scenes_per_second": rate})
@@ -76,13 +76,13 @@ def rates(fmu: Path, scenes: dict[str, np.ndarray], stop_time: float, most: int)
     for workers in range(1, most + 1):
         with (
             tempfile.TemporaryDirectory() as folder,
-            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster,
+            local_cluster(workers) as cluster,
         ):
-            address, output = cluster.scheduler_address, Path(folder)
-            # every worker loads its actuator
-            sweep(measure, {k: v[: 8 * workers] for k, v in scenes.items()}, output / "first.parquet", scheduler=address, batch=1, fmu=fmu)
+            first = {name: values[: 8 * workers] for name, values in scenes.items()}
+            # in batches of one, so that every worker loads its actuator
+            sweep(measure, first, Path(folder) / "first.parquet", cluster=cluster, batch=1, fmu=fmu)
             start = time.perf_counter()
-            table = sweep(measure, scenes, output / "timed.parquet", scheduler=address, fmu=fmu)
+            table = sweep(measure, scenes, Path(folder) / "timed.parquet", cluster=cluster, fmu=fmu)
             taken = time.perf_counter() - start
             assert column(table, "lambda3_amplitude")[: every * PLAIN : every].tolist() == plain
         yield f"Dask, {workers} worker{'s' if workers > 1 else ''}", len(rows) / taken

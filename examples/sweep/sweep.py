@@ -28,6 +28,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 from distributed import Client, LocalCluster, as_completed
+from distributed.deploy import Cluster
+from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 sys.path.insert(0, str(STUDIES))
@@ -39,6 +41,10 @@ from actuator_fmu import DEFAULT_FMU  # noqa: E402
 FINGERPRINT = b"sweep"
 BATCH = 100
 """Scenes that travel together: many enough to hide the millisecond that the scheduler takes for a task."""
+
+
+class AnotherSweep(ValueError):
+    """The output holds results of other scenes, another measure or another FMU."""
 
 
 class Unfinished(RuntimeError):
@@ -56,16 +62,17 @@ def sweep(
     scenes: Mapping[str, Sequence[float]],
     output: Path,
     *,
-    scheduler: str | None = None,
+    cluster: str | Cluster | None = None,
     workers: int | None = None,
     batch: int = BATCH,
     fmu: Path = DEFAULT_FMU,
 ) -> pa.Table:
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
-    `scenes` holds a column of start values for each varied variable. `scheduler` is the address of a Dask
-    scheduler; without one `workers` processes are started here (default: one a processor core). Raises
-    ValueError if `output` holds the results of another sweep, `Unfinished` if batches were lost.
+    `scenes` holds a column of start values for each varied variable. `cluster` is the address of a Dask
+    scheduler, or one of Dask's cluster objects; without it `workers` processes are started here (default:
+    one a processor core). Raises
+    `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost.
     """
     scenes = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
     results = _Results(output, _fingerprint(measure, scenes, fmu))
@@ -74,7 +81,7 @@ def sweep(
     progress = Progress(count, count - len(pending))
     lost: list[str] = []
     if len(pending):
-        with _client(scheduler, workers) as client:
+        with _client(cluster, workers) as client:
             _equip(client, measure, fmu)
             progress.begin(len(client.scheduler_info(n_workers=-1)["workers"]))
             batches = {}
@@ -146,7 +153,7 @@ class _Results:
         files = self._parts() or ([self._output] if self._output.exists() else [])
         for path in files:
             if (parquet.read_schema(path).metadata or {}).get(FINGERPRINT) != self._fingerprint:
-                raise ValueError(
+                raise AnotherSweep(
                     f"{path} holds another sweep: its scenes, measure or FMU differ; remove it or write elsewhere"
                 )
         return np.concatenate(
@@ -215,15 +222,18 @@ def _unwrapped(measure: worker_side.Measure) -> tuple[worker_side.Measure, dict]
 
 
 @contextmanager
-def _client(scheduler: str | None, workers: int | None):
-    if scheduler is not None:
-        with Client(scheduler) as client:
+def _client(cluster: str | Cluster | None, workers: int | None):
+    if cluster is None:
+        with local_cluster(workers) as own, Client(own) as client:
             yield client
-        return
-    # a process each, since Python outside the FMU is most of a short scene
-    with LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster:
+    else:
         with Client(cluster) as client:
             yield client
+
+
+def local_cluster(workers: int | None) -> LocalCluster:
+    """Worker processes on this machine, of one thread each: Python outside the FMU is most of a short scene."""
+    return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
 
 
 def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
@@ -231,5 +241,9 @@ def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
     own = inspect.getmodule(_unwrapped(measure)[0])
     for module in dict.fromkeys((actuator_fmu, worker_side, own)):
         if module.__name__ != "__main__":  # Dask sends a function of the script itself as code
-            client.upload_file(module.__file__)
+            name = f"module {module.__name__}"
+            # a scheduler in this process has the modules already, and must not load them a second time
+            in_this_process = client.cluster is not None
+            client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
+            client.register_plugin(UploadFile(module.__file__), name=name)
     client.register_plugin(worker_side.CarryFmu(fmu.name, fmu.read_bytes()))

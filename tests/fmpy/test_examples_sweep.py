@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -67,7 +68,7 @@ def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
             partial(scenes.frequency_response, stop_time=reference.stop_time),
             {name: [value] for name, value in reference.scene().items()},
             tmp_path / f"{k}.parquet",
-            scheduler=cluster,
+            cluster=cluster,
             fmu=fmu_path,
         )
         assert table["lambda3_amplitude"].to_pylist() == pytest.approx([reference.amplitude], abs=1e-8)
@@ -77,7 +78,7 @@ def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
 def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
     table = engine.sweep(
         whose, engine.grid(phi=np.linspace(0, 0.6, 200)), tmp_path / "whose.parquet",
-        scheduler=cluster, batch=5, fmu=fmu_path,
+        cluster=cluster, batch=5, fmu=fmu_path,
     )
     pairs = set(zip(table["process"].to_pylist(), table["actuator"].to_pylist()))
     assert len(table) == 200 and len(pairs) == len({process for process, _ in pairs}) == WORKERS
@@ -87,7 +88,7 @@ def test_a_failing_scene_is_reported_and_the_rest_kept(cluster, fmu_path, tmp_pa
     voltages = [0.1, 5000.0, 0.2, 0.9, float("nan")]
     table = engine.sweep(
         partial(scenes.pull_in, stop_time=200.0), engine.grid(phi=voltages), tmp_path / "some.parquet",
-        scheduler=cluster, batch=3, fmu=fmu_path,
+        cluster=cluster, batch=3, fmu=fmu_path,
     )
     assert table["pulled_in"].to_pylist() == [False, None, False, True, None]
     failures = table["failure"].to_pylist()
@@ -112,67 +113,69 @@ def test_a_stopped_sweep_goes_on_from_what_is_done(cluster, fmu_path, tmp_path, 
     with monkeypatch.context() as patched:
         patched.setattr(engine._Results, "add", stop_after_three)
         with pytest.raises(KeyboardInterrupt):
-            engine.sweep(measure, columns, output, scheduler=cluster, batch=7, fmu=fmu_path)
+            engine.sweep(measure, columns, output, cluster=cluster, batch=7, fmu=fmu_path)
     done = sum(map(len, written))
     assert not output.exists() and len(written) == 3
 
     capsys.readouterr()
-    table = engine.sweep(measure, columns, output, scheduler=cluster, batch=11, fmu=fmu_path)
+    table = engine.sweep(measure, columns, output, cluster=cluster, batch=11, fmu=fmu_path)
     assert f"going on from {done}: {60 - done} scenes" in capsys.readouterr().out
-    at_once = engine.sweep(measure, columns, tmp_path / "at_once.parquet", scheduler=cluster, fmu=fmu_path)
+    at_once = engine.sweep(measure, columns, tmp_path / "at_once.parquet", cluster=cluster, fmu=fmu_path)
     assert table.equals(at_once) and table.equals(parquet.read_table(output))
     assert [path.name for path in sorted(tmp_path.iterdir())] == ["at_once.parquet", "stopped.parquet"]
     np.testing.assert_array_equal(command.column(table, "phi"), columns["phi"])
 
     capsys.readouterr()
-    assert engine.sweep(measure, columns, output, scheduler="tcp://nowhere:1", fmu=fmu_path).equals(table)
+    assert engine.sweep(measure, columns, output, cluster="tcp://nowhere:1", fmu=fmu_path).equals(table)
     assert "nothing left to run" in capsys.readouterr().out
 
 
 def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
     output = tmp_path / "first.parquet"
     short, long = (partial(scenes.pull_in, stop_time=time) for time in (10.0, 20.0))
-    engine.sweep(short, engine.grid(phi=[0.1, 0.2]), output, scheduler=cluster, fmu=fmu_path)
+    engine.sweep(short, engine.grid(phi=[0.1, 0.2]), output, cluster=cluster, fmu=fmu_path)
     for measure, axes in ((long, {"phi": [0.1, 0.2]}), (short, {"phi": [0.1, 0.3]})):
-        with pytest.raises(ValueError, match="another sweep"):
-            engine.sweep(measure, engine.grid(**axes), output, scheduler=cluster, fmu=fmu_path)
+        with pytest.raises(engine.AnotherSweep, match="remove it or write elsewhere"):
+            engine.sweep(measure, engine.grid(**axes), output, cluster=cluster, fmu=fmu_path)
 
 
 def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):
+    """A batch that was on a dying worker too often counts as lost with it; all others must be there."""
     output, columns = tmp_path / "lost.parquet", engine.grid(phi=np.arange(0.1, 0.85, 0.1).round(1))
-    with dask.config.set({"distributed.scheduler.allowed-failures": 0}):
-        with pytest.raises(engine.Unfinished, match="scenes 4 to 5"):
+    with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
+        with pytest.raises(engine.Unfinished) as unfinished:
             engine.sweep(fatal, columns, output, workers=1, batch=2, fmu=fmu_path)
-    kept = [parquet.read_table(path) for path in (tmp_path / "lost.parquet.parts").iterdir()]
-    assert sorted(number for table in kept for number in table["scene"].to_pylist()) == [0, 1, 2, 3, 6, 7]
+    lost = {int(first) for first in re.findall(r"scenes (\d+) to", str(unfinished.value))}
+    kept = [parquet.read_table(path)["scene"].to_pylist() for path in (tmp_path / "lost.parquet.parts").iterdir()]
+    assert 4 in lost and sorted(kept) == [[k, k + 1] for k in (0, 2, 4, 6) if k not in lost] != []
 
 
 def test_the_pull_in_map_agrees_with_the_thresholds(fmu_path, tmp_path):
     options = ["--voltages", "40", "--prestresses", "12"]
-    printed = run_script("pull_in_map.py", fmu_path, tmp_path, *options)
+    printed = run_script("pull_in_map.py", fmu_path, tmp_path, "--workers", str(WORKERS), *options)
     assert "all but 0 of 480" in printed
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pull_in_map.parquet", "pull_in_map.png"]
     pulled_in = parquet.read_table(tmp_path / "pull_in_map.parquet")["pulled_in"].to_pylist()
     assert 100 < sum(pulled_in) < 380
-    assert "nothing left to run" in run_script("pull_in_map.py", fmu_path, tmp_path, *options)
 
 
-def test_the_frequency_response_is_drawn(fmu_path, tmp_path):
-    run_script("frequency_response.py", fmu_path, tmp_path, "--amplitudes", "4", "--frequencies", "25")
+def test_the_frequency_response_is_drawn(cluster, fmu_path, tmp_path):
+    options = ["--amplitudes", "4", "--frequencies", "25"]
+    run_script("frequency_response.py", fmu_path, tmp_path, "--scheduler", cluster, *options)
     assert (tmp_path / "frequency_response.png").stat().st_size > 10_000
     table = parquet.read_table(tmp_path / "frequency_response.parquet")
     assert len(table) == 100 and min(table["lambda3_amplitude"].to_pylist()) > 0
 
 
 def test_the_rates_are_measured(fmu_path, tmp_path):
-    printed = run_script("rates.py", fmu_path, tmp_path, "--scenes", "60", workers=1)
+    printed = run_script("rates.py", fmu_path, tmp_path, "--scenes", "60", "--workers", "1")
     assert printed.count("scenes a second\n") == 6
     assert (tmp_path / "rates.csv").read_text().count("\n") == 7 and (tmp_path / "rates.png").exists()
 
 
-def run_script(name, fmu, output, *options, workers=WORKERS) -> str:
+def run_script(name, fmu, output, *options) -> str:
     done = subprocess.run(
-        [sys.executable, EXAMPLE / name, "--fmu", fmu, "--output", output, "--workers", str(workers), *options],
+        [sys.executable, EXAMPLE / name, "--fmu", fmu, "--output", output, *options],
         capture_output=True,
         text=True,
         timeout=300,
