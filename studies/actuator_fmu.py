@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -176,6 +176,20 @@ class ActuatorFmu:
             variables.values[:] = [values[name] for name in names]
             with self._reasons():
                 variables.write()
+
+    def set_input_derivatives(self, derivatives: Mapping[str, Sequence[float]]) -> None:
+        """Let inputs vary inside the steps to come: for each its first, second, … derivative by time at `time`.
+
+        They hold until the input is set again, so that they are set after its value.
+        """
+        triples = [
+            (self._variable(name).valueReference, order, value)
+            for name, values in derivatives.items()
+            for order, value in enumerate(values, start=1)
+        ]
+        if triples:
+            with self._reasons():
+                self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
 
     def get(self, *names: str):
         """Present value of one variable, or of several as a list in the given order."""

@@ -67,8 +67,9 @@ def draw(table: pa.Table) -> Figure:
     axes.grid(False)
     axes.legend(loc="upper right")
     bar = figure.colorbar(time_image, ax=axes, label="time until pull-in", pad=0.01)
-    for set_formatter in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
-        set_formatter("{x:g}")
+    bar.ax.yaxis.set_ticks((20, 30, 50, 100), minor=False)
+    bar.ax.yaxis.set_ticks((), minor=True)
+    bar.ax.yaxis.set_major_formatter("{x:g}")
     figure.colorbar(safe_image, ax=axes, label=rf"smallest {style.SYMBOLS['lambda3']} where it oscillates", pad=0.02)
     axes.set_title(f"Voltage step from rest, {style.setting(**SURFACE_EFFECTS)}: {len(table)} scenes", loc="left")
     return figure
