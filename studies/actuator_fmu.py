@@ -191,6 +191,14 @@ class ActuatorFmu:
             with self._reasons():
                 self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
 
+    def output_derivatives(self, name: str, order: int) -> list[float]:
+        """Derivatives of an output by time at the last communication point, from the first to the given order."""
+        if order == 0:
+            return []
+        references = [self._variable(name).valueReference] * order
+        with self._reasons():
+            return self._fmu.getRealOutputDerivatives(references, list(range(1, order + 1)))
+
     def get(self, *names: str):
         """Present value of one variable, or of several as a list in the given order."""
         found = {}
