@@ -7,7 +7,7 @@ PYTHON_IN_VENV := $(VENV)/bin/python
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
-EXAMPLES = sweep/pull_in_map sweep/frequency_response sweep/rates
+EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.

@@ -208,6 +208,23 @@ class ActuatorFmu:
             found.update(zip(group, variables.values))
         return found[names[0]] if len(names) == 1 else [found[name] for name in names]
 
+    def directional_derivatives(self, unknowns: Iterable[str], known: str) -> list[float]:
+        """∂unknown/∂known of each unknown at the present state, exact."""
+        references = [self._variable(name).valueReference for name in unknowns]
+        with self._reasons():
+            return self._fmu.getDirectionalDerivative(references, [self._variable(known).valueReference], [1.0])
+
+    @contextmanager
+    def looking_ahead(self):
+        """A block in which the instance may run on; after it, it is again where it was before."""
+        state, time = self._fmu.getFMUstate(), self.time
+        try:
+            yield
+        finally:
+            self._fmu.setFMUstate(state)
+            self._fmu.freeFMUstate(state)
+            self.time = time
+
     def advance(self, communication_step: float) -> bool:
         """One communication step. False if the FMU ended the run inside it (``on_pull_in`` = terminate);
         `time` is then the instant that it reached."""

@@ -1,0 +1,152 @@
+"""Two position controllers of the stretch. The actuator has no damping: it is theirs to supply.
+
+A controller sees at each sampling instant what a sensor would tell, `Measured`, and answers with the voltage
+that is held until the next. Neither is told a disturbance of the prestress.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import expm
+from scipy.optimize import lsq_linear
+
+from actuator_fmu import ActuatorFmu
+from quasi_static import squared_voltages
+
+Target = Callable[[float], float]
+"""The wanted stretch over time."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a controller sees: the stretch, its rate, and the largest voltage that is safe now."""
+
+    time: float
+    stretch: float
+    rate: float
+    safe_voltage: float
+
+
+class FeedForwardPI:
+    """PI with damping on φ², around the voltage that holds the target.
+
+    φ² = φ²(target) + P e + I ∫e dt − D λ',  e = target − λ. The square root afterwards makes the force linear in
+    what the controller sets. The integral stands still while the voltage is at a bound.
+    """
+
+    P, I, D = 2.5, 0.12, 40.0
+    STRETCHES = np.linspace(0.95, 1.25, 61)
+
+    def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
+        self._target, self._period = target, period
+        self._curve = squared_voltages(model, scene, self.STRETCHES)
+        self._integral = 0.0
+
+    def voltage(self, measured: Measured) -> float:
+        """The voltage to hold over the coming period."""
+        wanted = self._target(measured.time)
+        deviation = wanted - measured.stretch
+        feed_forward = float(np.interp(wanted, self.STRETCHES, self._curve))
+        integral = self._integral + self.I * self._period * deviation
+        squared = feed_forward + self.P * deviation + integral - self.D * measured.rate
+        bounded = min(max(squared, 0.0), measured.safe_voltage**2)
+        if bounded == squared:
+            self._integral = integral
+        return math.sqrt(bounded)
+
+
+class Predictive:
+    """Model-predictive control with the FMU as its model, a step of Gauss and Newton at each sample.
+
+    From the measured state the model runs ahead under the last plan; the FMU's directional derivatives of λ''
+    along that run say how the prediction changes with the voltages. A bounded least-squares problem gives the
+    new plan: least deviation from the target over the horizon, with voltages that change little. Then the
+    model is put back (fmi2SetFMUstate), runs the new plan, and a plan that ends in pull-in is not used.
+
+    The prestress is estimated: what the rate gained over the last sample beyond the prediction, divided by
+    ∂λ''/∂S, is put to a change of S.
+    """
+
+    HORIZON = 40.0
+    SMOOTHNESS = 0.02
+    """Weight of a change of the voltage from one sample to the next, beside that of the deviation."""
+    GAIN = 0.5
+    """Share of a deviation of the rate that the estimate takes over at once."""
+
+    def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
+        self._model, self._scene, self._target, self._period = model, dict(scene), target, period
+        self._plan = np.zeros(max(2, math.ceil(self.HORIZON / period)))
+        self._prestress = scene["S"]
+        self._predicted_rate: float | None = None
+
+    def voltage(self, measured: Measured) -> float:
+        """The voltage to hold over the coming period."""
+        model, plan = self._model, np.clip(np.append(self._plan[1:], self._plan[-1]), 0.0, measured.safe_voltage)
+        self._start(measured)
+        if self._predicted_rate is not None:
+            (influence,) = model.directional_derivatives(["lambda_ddot"], "S")
+            surprise = (measured.rate - self._predicted_rate) / (influence * self._period)
+            self._prestress += self.GAIN * surprise
+            model.set({"S": self._prestress})
+        with model.looking_ahead():
+            stretches, influences = self._linearized(plan)
+        improved = self._improved(measured, plan, stretches, influences)
+        with model.looking_ahead():
+            safe = self._survives(improved)
+        # the last plan, bounded, is what was safe one sample before
+        self._plan = improved if safe else plan
+        model.set({"phi": self._plan[0]})
+        model.advance(self._period)
+        self._predicted_rate = model.get("lambda_dot")
+        return float(self._plan[0])
+
+    def _start(self, measured: Measured) -> None:
+        start = {"lambda_start": measured.stretch, "lambda_dot_start": measured.rate, "S": self._prestress}
+        self._model.start({**self._scene, **start}, start_time=measured.time)
+
+    def _linearized(self, plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Predicted stretches at the ends of the samples, and how each depends on each voltage of the plan."""
+        model, count = self._model, len(plan)
+        stretches, influences = np.empty(count), np.zeros((count, count))
+        effect = np.zeros((2, count))  # of every voltage on stretch and rate so far
+        for k, voltage in enumerate(plan):
+            model.set({"phi": voltage})
+            transition, gain = self._discrete()
+            if not model.advance(self._period) or model.get("pulled_in"):
+                stretches[k:] = model.get("lambda")
+                break
+            effect = transition @ effect
+            effect[:, k] += gain
+            stretches[k], influences[k] = model.get("lambda"), effect[0]
+        return stretches, influences
+
+    def _discrete(self) -> tuple[np.ndarray, np.ndarray]:
+        """How stretch and rate at the end of a sample depend on those at its start, and on its voltage."""
+        continuous = np.zeros((3, 3))
+        continuous[0, 1] = 1.0
+        for column, known in enumerate(("lambda", "lambda_dot", "phi")):
+            continuous[1, column] = self._model.directional_derivatives(["lambda_ddot"], known)[0]
+        over_period = expm(continuous * self._period)
+        return over_period[:2, :2], over_period[:2, 2]
+
+    def _improved(self, measured: Measured, plan: np.ndarray, stretches: np.ndarray, influences: np.ndarray) -> np.ndarray:
+        """The plan within 0 and the safe voltage with the least squares of deviations and changes."""
+        times = measured.time + self._period * np.arange(1, len(plan) + 1)
+        deviations = np.array([self._target(time) for time in times]) - stretches
+        # a change over a longer period is the same slope
+        weight = self.SMOOTHNESS / self._period
+        changes = weight * (np.eye(len(plan)) - np.eye(len(plan), k=-1))[1:]
+        system = np.vstack([influences, changes])
+        right = np.concatenate([deviations, -changes @ plan])
+        bounds = (-plan, np.maximum(measured.safe_voltage, 1e-9) - plan)
+        return np.clip(plan + lsq_linear(system, right, bounds, method="bvls").x, 0.0, measured.safe_voltage)
+
+    def _survives(self, plan: np.ndarray) -> bool:
+        for voltage in plan:
+            self._model.set({"phi": voltage})
+            self._model.advance(self._period)
+        return not self._model.get("pulled_in")
