@@ -34,12 +34,12 @@ class Measured:
 class FeedForwardPI:
     """PI with damping on φ², around the voltage that holds the target.
 
-    φ² = φ²(target) + P e + I ∫e dt − D λ',  e = target − λ. The square root afterwards makes the force linear in
+    φ² = φ²(target) + P e + I ∫e dt + D e',  e = target − λ. The square root afterwards makes the force linear in
     what the controller sets. The integral stands still while the voltage is at a bound.
     """
 
-    P, I, D = 2.5, 0.12, 40.0
-    STRETCHES = np.linspace(0.95, 1.25, 61)
+    P, I, D = 4.0, 0.3, 25.0
+    STRETCHES = np.linspace(0.95, 1.6, 66)
 
     def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
         self._target, self._period = target, period
@@ -52,7 +52,8 @@ class FeedForwardPI:
         deviation = wanted - measured.stretch
         feed_forward = float(np.interp(wanted, self.STRETCHES, self._curve))
         integral = self._integral + self.I * self._period * deviation
-        squared = feed_forward + self.P * deviation + integral - self.D * measured.rate
+        wanted_rate = (self._target(measured.time + self._period) - wanted) / self._period
+        squared = feed_forward + self.P * deviation + integral + self.D * (wanted_rate - measured.rate)
         bounded = min(max(squared, 0.0), measured.safe_voltage**2)
         if bounded == squared:
             self._integral = integral

@@ -29,6 +29,8 @@ class Scenario:
     target: Target
     prestress: Callable[[float], float]
     stop_time: float
+    silence: tuple[float, float] = (math.inf, math.inf)
+    """From when to when the controller does not act and its last voltage stays."""
 
 
 @dataclass(frozen=True)
@@ -39,14 +41,20 @@ class Run:
     seconds: np.ndarray
     pulled_in: bool
 
-    @property
-    def deviation(self) -> float:
-        """Root mean square of target − λ."""
-        return float(np.sqrt(np.mean((self.rows["target"] - self.rows["stretch"]) ** 2)))
+    def deviation(self, start_time: float) -> float:
+        """Root mean square of target − λ from `start_time` on."""
+        rows = self.rows[self.rows["time"] >= start_time]
+        return float(np.sqrt(np.mean((rows["target"] - rows["stretch"]) ** 2)))
 
 
-def close_loop(plant: ActuatorFmu, model: ActuatorFmu, kind: type, scenario: Scenario, *, period: float, guarded: bool = True) -> Run:
-    """Run a controller of the given kind with the given sampling period; `model` is the one it may look ahead with."""
+def close_loop(
+    plant: ActuatorFmu, model: ActuatorFmu, kind: type, scenario: Scenario, *, period: float, guarded: bool = True
+) -> Run:
+    """Run a controller of the given kind with the given sampling period.
+
+    `model` is the instance that it may look ahead with. A guarded controller is told the largest safe voltage,
+    `RESERVE` below the threshold that ``pull_in_margin`` speaks of; an unguarded one may use 1.
+    """
     controller = kind(model, SCENE, scenario.target, period)
     plant.start({**SCENE, "S": scenario.prestress(0.0)})
     rows_a_sample = max(1, math.ceil(period / ROW))
@@ -57,13 +65,14 @@ def close_loop(plant: ActuatorFmu, model: ActuatorFmu, kind: type, scenario: Sce
         plant.set({"S": scenario.prestress(now)})
         stretch, rate, voltage, margin = plant.get("lambda", "lambda_dot", "phi", "pull_in_margin")
         safe = max(voltage + margin - RESERVE, 0.0) if guarded else 1.0
-        begin = time.perf_counter()
-        command = controller.voltage(Measured(now, stretch, rate, safe))
-        seconds.append(time.perf_counter() - begin)
-        plant.set({"phi": command})
+        if not scenario.silence[0] <= now < scenario.silence[1]:
+            begin = time.perf_counter()
+            voltage = controller.voltage(Measured(now, stretch, rate, safe))
+            seconds.append(time.perf_counter() - begin)
+            plant.set({"phi": voltage})
         for row in range(rows_a_sample):
             plant.time = now + row * period / rows_a_sample
-            rows.append((plant.time, plant.get("lambda"), command, safe, scenario.target(plant.time)))
+            rows.append((plant.time, plant.get("lambda"), voltage, safe, scenario.target(plant.time)))
             plant.advance(period / rows_a_sample)
         if plant.get("pulled_in"):
             break

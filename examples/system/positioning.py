@@ -2,7 +2,7 @@
 
     python examples/system/positioning.py
 
-Packs positioning.ssp, runs it in FMPy's `simulate_ssp` and in `coupling.py` with derivatives up to order 2,
+Packs positioning.ssp, runs it in FMPy's `simulate_ssp` and in `coupling.py` with derivatives up to order 3,
 prints the errors, and writes response.png and coupling_error.png. The reference is the whole loop as one
 differential equation, solved by SciPy's DOP853; it asks the actuator for λ'' at a given state and no more.
 """
@@ -33,7 +33,7 @@ FINE_STEP = 0.015625
 TOLERANCE = 1e-12
 OUTPUTS = ["leader.lambda", "follower.lambda", "supply.voltage"]
 FMPY = "FMPy simulate_ssp"
-ORDERS = {"held": 0, "first derivative": 1, "up to the second": 2}
+ORDERS = {"held": 0, "first derivative": 1, "up to the second": 2, "up to the third": 3}
 
 
 def reference(coupling: Coupling, times: np.ndarray) -> np.ndarray:

@@ -61,8 +61,8 @@ def test_the_positioning_converges_as_its_page_says(fmu_path, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     rows = {line[:20].strip(): line[20:].split() for line in done.stdout.splitlines() if "e-0" in line[20:35]}
-    assert list(rows) == ["FMPy simulate_ssp", "held", "first derivative", "up to the second"]
-    for (name, errors), order in zip(rows.items(), (1, 1, 2, 3)):
+    assert list(rows) == ["FMPy simulate_ssp", "held", "first derivative", "up to the second", "up to the third"]
+    for (name, errors), order in zip(rows.items(), (1, 1, 2, 3, 4)):
         # halved steps from 0.5 to 0.0625
         halved = np.log2(np.array(errors[2:6], dtype=float))
         assert (halved[0] - halved[-1]) / 3 == pytest.approx(order, abs=0.25), name
