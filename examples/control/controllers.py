@@ -64,90 +64,95 @@ class Predictive:
     """Model-predictive control with the FMU as its model, a step of Gauss and Newton at each sample.
 
     From the measured state the model runs ahead under the last plan; the FMU's directional derivatives of λ''
-    along that run say how the prediction changes with the voltages. A bounded least-squares problem gives the
-    new plan: least deviation from the target over the horizon, with voltages that change little. Then the
-    model is put back (fmi2SetFMUstate), runs the new plan, and a plan that ends in pull-in is not used.
+    along that run say how the prediction changes with the plan, which is one φ² for each sample. A bounded
+    least-squares problem gives the new plan: least deviation from the target over the horizon, with voltages
+    that change little. Then the model is put back (fmi2SetFMUstate) and runs the new plan, and a plan that
+    ends in pull-in is not used.
 
     The prestress is estimated: what the rate gained over the last sample beyond the prediction, divided by
     ∂λ''/∂S, is put to a change of S.
     """
 
-    HORIZON = 40.0
+    HORIZON = 30.0
     SMOOTHNESS = 0.02
-    """Weight of a change of the voltage from one sample to the next, beside that of the deviation."""
+    """Weight of a change of φ² from one sample to the next, beside that of the deviation."""
     GAIN = 0.5
     """Share of a deviation of the rate that the estimate takes over at once."""
+    LEAST = 1e-6
+    """Of φ² in a plan: at 0 the derivative by φ vanishes, and with it that by φ² could not be told."""
 
     def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
         self._model, self._scene, self._target, self._period = model, dict(scene), target, period
-        self._plan = np.zeros(max(2, math.ceil(self.HORIZON / period)))
+        self._plan = np.full(max(2, math.ceil(self.HORIZON / period)), self.LEAST)
         self._prestress = scene["S"]
         self._predicted_rate: float | None = None
 
     def voltage(self, measured: Measured) -> float:
         """The voltage to hold over the coming period."""
-        model, plan = self._model, np.clip(np.append(self._plan[1:], self._plan[-1]), 0.0, measured.safe_voltage)
+        model = self._model
+        # a bound below the least would leave nothing to choose
+        most = max(measured.safe_voltage**2, 2 * self.LEAST)
+        plan = np.clip(np.append(self._plan[1:], self._plan[-1]), self.LEAST, most)
         self._start(measured)
-        if self._predicted_rate is not None:
-            (influence,) = model.directional_derivatives(["lambda_ddot"], "S")
-            surprise = (measured.rate - self._predicted_rate) / (influence * self._period)
-            self._prestress += self.GAIN * surprise
-            model.set({"S": self._prestress})
         with model.looking_ahead():
             stretches, influences = self._linearized(plan)
-        improved = self._improved(measured, plan, stretches, influences)
+        improved = self._improved(measured.time, plan, most, stretches, influences)
         with model.looking_ahead():
             safe = self._survives(improved)
         # the last plan, bounded, is what was safe one sample before
         self._plan = improved if safe else plan
-        model.set({"phi": self._plan[0]})
+        voltage = math.sqrt(self._plan[0])
+        model.set({"phi": voltage})
         model.advance(self._period)
         self._predicted_rate = model.get("lambda_dot")
-        return float(self._plan[0])
+        return voltage
 
     def _start(self, measured: Measured) -> None:
+        """Put the model into the measured state, with what is now thought of the prestress."""
         start = {"lambda_start": measured.stretch, "lambda_dot_start": measured.rate, "S": self._prestress}
         self._model.start({**self._scene, **start}, start_time=measured.time)
+        if self._predicted_rate is not None:
+            (influence,) = self._model.directional_derivatives(["lambda_ddot"], "S")
+            self._prestress += self.GAIN * (measured.rate - self._predicted_rate) / (influence * self._period)
+            self._model.set({"S": self._prestress})
 
     def _linearized(self, plan: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Predicted stretches at the ends of the samples, and how each depends on each voltage of the plan."""
+        """Predicted stretches at the ends of the samples, and how each depends on each φ² of the plan."""
         model, count = self._model, len(plan)
-        stretches, influences = np.empty(count), np.zeros((count, count))
-        effect = np.zeros((2, count))  # of every voltage on stretch and rate so far
-        for k, voltage in enumerate(plan):
+        stretches = np.empty(count)
+        rates = np.zeros((count, 3, 3))  # of stretch, stretch rate and φ², by each of them
+        rates[:, 0, 1] = 1.0
+        for k, squared in enumerate(plan):
+            voltage = math.sqrt(squared)
             model.set({"phi": voltage})
-            transition, gain = self._discrete()
-            if not model.advance(self._period) or model.get("pulled_in"):
-                stretches[k:] = model.get("lambda")
-                break
-            effect = transition @ effect
-            effect[:, k] += gain
-            stretches[k], influences[k] = model.get("lambda"), effect[0]
+            for column, known in enumerate(("lambda", "lambda_dot", "phi")):
+                rates[k, 1, column] = model.directional_derivatives(["lambda_ddot"], known)[0]
+            rates[k, 1, 2] /= 2 * voltage
+            model.advance(self._period)
+            stretches[k] = model.get("lambda")
+        over_period = expm(rates * self._period)
+        influences, effect = np.zeros((count, count)), np.zeros((2, count))  # of every φ² so far
+        for k, transition in enumerate(over_period):
+            effect = transition[:2, :2] @ effect
+            effect[:, k] += transition[:2, 2]
+            influences[k] = effect[0]
         return stretches, influences
 
-    def _discrete(self) -> tuple[np.ndarray, np.ndarray]:
-        """How stretch and rate at the end of a sample depend on those at its start, and on its voltage."""
-        continuous = np.zeros((3, 3))
-        continuous[0, 1] = 1.0
-        for column, known in enumerate(("lambda", "lambda_dot", "phi")):
-            continuous[1, column] = self._model.directional_derivatives(["lambda_ddot"], known)[0]
-        over_period = expm(continuous * self._period)
-        return over_period[:2, :2], over_period[:2, 2]
-
-    def _improved(self, measured: Measured, plan: np.ndarray, stretches: np.ndarray, influences: np.ndarray) -> np.ndarray:
-        """The plan within 0 and the safe voltage with the least squares of deviations and changes."""
-        times = measured.time + self._period * np.arange(1, len(plan) + 1)
-        deviations = np.array([self._target(time) for time in times]) - stretches
+    def _improved(
+        self, time: float, plan: np.ndarray, most: float, stretches: np.ndarray, influences: np.ndarray
+    ) -> np.ndarray:
+        """The plan of φ² from `LEAST` to `most` with the least squares of deviations and changes."""
+        times = time + self._period * np.arange(1, len(plan) + 1)
+        deviations = np.array([self._target(end) for end in times]) - stretches
         # a change over a longer period is the same slope
-        weight = self.SMOOTHNESS / self._period
-        changes = weight * (np.eye(len(plan)) - np.eye(len(plan), k=-1))[1:]
+        changes = self.SMOOTHNESS / self._period * np.diff(np.eye(len(plan)), axis=0)
         system = np.vstack([influences, changes])
         right = np.concatenate([deviations, -changes @ plan])
-        bounds = (-plan, np.maximum(measured.safe_voltage, 1e-9) - plan)
-        return np.clip(plan + lsq_linear(system, right, bounds, method="bvls").x, 0.0, measured.safe_voltage)
+        step = lsq_linear(system, right, (self.LEAST - plan - 1e-12, most - plan + 1e-12), method="bvls").x
+        return np.clip(plan + step, self.LEAST, most)
 
     def _survives(self, plan: np.ndarray) -> bool:
-        for voltage in plan:
-            self._model.set({"phi": voltage})
+        for squared in plan:
+            self._model.set({"phi": math.sqrt(squared)})
             self._model.advance(self._period)
         return not self._model.get("pulled_in")

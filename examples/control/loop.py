@@ -73,7 +73,8 @@ def close_loop(
         for row in range(rows_a_sample):
             plant.time = now + row * period / rows_a_sample
             rows.append((plant.time, plant.get("lambda"), voltage, safe, scenario.target(plant.time)))
-            plant.advance(period / rows_a_sample)
+            if not plant.advance(period / rows_a_sample):
+                raise RuntimeError(plant.messages[-1].text)
         if plant.get("pulled_in"):
             break
     names = ("time", "stretch", "voltage", "safe_voltage", "target")

@@ -42,19 +42,19 @@ def test_looking_ahead_leaves_no_trace(actuator):
     assert run(look=True) == run(look=False)
 
 
-def test_the_predicted_influence_of_the_voltages_is_that_of_the_motion(actuator):
+def test_the_predicted_influence_of_the_plan_is_that_of_the_motion(actuator):
     """Against central differences of whole runs; the derivatives are frozen over a sample, hence the tolerance."""
-    period, count, change = 0.25, 24, 1e-5
+    period, count, change = 0.25, 24, 1e-5  # change of φ²
     predictive = controllers.Predictive(actuator, loop.SCENE, lambda time: 1.0, period)
-    plan = 0.4 + 0.2 * np.sin(np.arange(count) / 4)
+    plan = (0.4 + 0.2 * np.sin(np.arange(count) / 4)) ** 2
     measured = controllers.Measured(0.0, 1.02, 0.003, 1.0)
     predictive._start(measured)
     stretches, influences = predictive._linearized(plan)
 
     def final(plan):
         actuator.start({**loop.SCENE, "lambda_start": measured.stretch, "lambda_dot_start": measured.rate})
-        for voltage in plan:
-            actuator.set({"phi": voltage})
+        for squared in plan:
+            actuator.set({"phi": math.sqrt(squared)})
             actuator.advance(period)
         return actuator.get("lambda")
 
