@@ -30,7 +30,7 @@ from loop import RESERVE, SCENE, Run, Scenario, close_loop  # noqa: E402
 DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "examples" / "control"
 CONTROLLERS = {"PI with feed-forward": FeedForwardPI, "predictive": Predictive}
 PERIOD = 1.0
-PERIODS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0)
+PERIODS = (0.5, 1.0, 2.0, 3.0, 4.0, 6.0)
 STEP_AT, SINE_AT, REST_AT, PUSH_AT, STOP_AT = 20.0, 120.0, 300.0, 340.0, 440.0
 
 

@@ -49,8 +49,10 @@ def pack_system(actuator: Path, folder: Path) -> Path:
     with zipfile.ZipFile(ssp, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in ("SystemStructure.ssd", "parameters.ssv"):
             archive.write(HERE / name, name)
-        for fmu in (*fmus, actuator):
+        for fmu in fmus:
             archive.write(fmu, f"resources/{fmu.name}")
+        # under the name that SystemStructure.ssd knows it by
+        archive.write(actuator, f"resources/{DEFAULT_FMU.name}")
     return ssp
 
 

@@ -101,7 +101,8 @@ def draw_response(ssp: Path, coupling: Coupling, exact: np.ndarray) -> Figure:
     step = STEPS[1]
     fine = FINE_STEP * np.arange(len(exact))
     times = step * np.arange(1, round(fine[-1] / step) + 1)
-    hosts = {FMPY: by_fmpy(ssp, fine[-1], step), "up to the second": by_derivatives(coupling, fine[-1], step, 2)}
+    best = list(ORDERS)[-1]
+    hosts = {FMPY: by_fmpy(ssp, fine[-1], step), best: by_derivatives(coupling, fine[-1], step, ORDERS[best])}
     figure, panels = plt.subplots(3, 1, figsize=(9, 7.5), sharex=True)
     for column, (panel, title) in enumerate(zip(panels, ("(a)  leader", "(b)  follower", "(c)  supply"))):
         panel.plot(fine, exact[:, column], color=style.BLACK, linewidth=1.2, label="exact")

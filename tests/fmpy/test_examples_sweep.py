@@ -150,9 +150,9 @@ def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):
     assert 4 in lost and sorted(kept) == [[k, k + 1] for k in (0, 2, 4, 6) if k not in lost] != []
 
 
-def test_the_pull_in_map_agrees_with_the_thresholds(fmu_path, tmp_path):
+def test_the_pull_in_map_agrees_with_the_thresholds(cluster, fmu_path, tmp_path):
     options = ["--voltages", "40", "--prestresses", "12"]
-    printed = run_script("pull_in_map.py", fmu_path, tmp_path, "--workers", str(WORKERS), *options)
+    printed = run_script("pull_in_map.py", fmu_path, tmp_path, "--scheduler", cluster, *options)
     assert "all but 0 of 480" in printed
     assert sorted(path.name for path in tmp_path.iterdir()) == ["pull_in_map.parquet", "pull_in_map.png"]
     pulled_in = parquet.read_table(tmp_path / "pull_in_map.parquet")["pulled_in"].to_pylist()
@@ -167,8 +167,25 @@ def test_the_frequency_response_is_drawn(cluster, fmu_path, tmp_path):
     assert len(table) == 100 and min(table["lambda3_amplitude"].to_pylist()) > 0
 
 
+def test_the_sweep_of_the_page_runs(tmp_path):
+    page = (EXAMPLE / "README.md").read_text()
+    (code,) = re.findall(r"^```python\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
+    (tmp_path / "own.py").write_text(code)
+    done = subprocess.run(
+        [sys.executable, "own.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(EXAMPLE)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    table = parquet.read_table(tmp_path / "turning_stretch.parquet")
+    assert len(table) == 60 and table["failure"].null_count == 60
+
+
 def test_the_rates_are_measured(fmu_path, tmp_path):
-    printed = run_script("rates.py", fmu_path, tmp_path, "--scenes", "60", "--workers", "1")
+    printed = run_script("rates.py", fmu_path, tmp_path, "--scenes", "20", "--workers", "1")
     assert printed.count("scenes a second\n") == 6
     assert (tmp_path / "rates.csv").read_text().count("\n") == 7 and (tmp_path / "rates.png").exists()
 

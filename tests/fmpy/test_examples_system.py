@@ -1,7 +1,9 @@
 """The system example: its FMUs, its SSP in FMPy, and the order that each derivative gains."""
 
+import re
 import subprocess
 import sys
+import textwrap
 import zipfile
 from pathlib import Path
 
@@ -54,6 +56,17 @@ def test_the_controller_settles_where_its_equations_say(linear):
         assert controller.get("command") == pytest.approx(0.3 + 2.0 * 0.05 + 0.5 * 0.05 * 40, abs=1e-13)
 
 
+def test_the_program_of_the_page_runs(fmu_path, tmp_path, monkeypatch):
+    folder = tmp_path / "target" / "examples" / "system"
+    pack.pack_system(fmu_path, folder)
+    page = (EXAMPLE / "README.md").read_text()
+    (code,) = re.findall(r"^ *```python\n(.*?)^ *```", page, flags=re.MULTILINE | re.DOTALL)
+    monkeypatch.chdir(tmp_path)
+    values = {}
+    exec(compile(textwrap.dedent(code), "README.md", "exec"), values)
+    assert values["result"]["leader.lambda"][-1] == pytest.approx(1.05, abs=0.005)
+
+
 def test_the_positioning_converges_as_its_page_says(fmu_path, tmp_path):
     options = ["--fmu", fmu_path, "--output", tmp_path, "--stop-time", "60"]
     done = subprocess.run(
@@ -69,4 +82,4 @@ def test_the_positioning_converges_as_its_page_says(fmu_path, tmp_path):
     assert float(rows["up to the second"][1]) < float(rows["held"][-1])
     assert {"coupling_error.png", "positioning.ssp", "response.png"} < {path.name for path in tmp_path.iterdir()}
     with zipfile.ZipFile(tmp_path / "positioning.ssp") as ssp:
-        assert f"resources/{fmu_path.name}" in ssp.namelist()
+        assert "resources/DielectricElastomerActuator.fmu" in ssp.namelist()
