@@ -35,17 +35,18 @@ PLAIN = 20
 
 def main() -> None:
     """Time every way, print, draw."""
-    arguments = parse(__doc__, scenes=8000)
+    arguments = parse(__doc__, scenes=8000, lengths=len(STOP_TIMES))
     most = arguments.workers or os.cpu_count() or 1
     rows = []
-    for stop_time in STOP_TIMES:
+    for stop_time in STOP_TIMES[: arguments.lengths]:
         # long scenes need no more of them to be timed
         count = max(PLAIN, int(arguments.scenes * min(1.0, 4000.0 / stop_time)))
         surface_effects = {name: [value] for name, value in SURFACE_EFFECTS.items()}
         scenes = grid(phi_ac=[0.3], omega_ac=np.linspace(0.03, 0.33, count), **surface_effects)
         for way, rate in rates(arguments.fmu, scenes, stop_time, most):
             print(f"t <= {stop_time:<6g} {way:<24} {rate:>10.1f} scenes a second", flush=True)
-            rows.append({"stop_time": stop_time, "way": way, "scenes_per_second": rate})
+            load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
+            rows.append({"stop_time": stop_time, "way": way, "scenes_per_second": rate, "load": load})
     arguments.output.mkdir(parents=True, exist_ok=True)
     with (arguments.output / "rates.csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, rows[0])
@@ -102,14 +103,15 @@ def plain_amplitude(fmu: Path, scene: dict[str, float], stop_time: float) -> flo
 
 def draw(rows: list[dict]) -> Figure:
     """A bar for each way, a panel for each length of the scenes."""
-    figure, panels = plt.subplots(1, len(STOP_TIMES), figsize=(10, 3.4), sharey=True)
-    for panel, stop_time in zip(panels, STOP_TIMES):
+    stop_times = list(dict.fromkeys(row["stop_time"] for row in rows))
+    figure, (panels,) = plt.subplots(1, len(stop_times), figsize=(10, 3.4), sharey=True, squeeze=False)
+    for panel, stop_time in zip(panels, stop_times):
         chosen = [row for row in rows if row["stop_time"] == stop_time]
         bars = panel.barh(
             [row["way"] for row in chosen], [row["scenes_per_second"] for row in chosen], color=style.COLOURS[0]
         )
         panel.bar_label(bars, fmt="{:.0f}", padding=3)
-        panel.set(xscale="log", xlabel="scenes a second", title=f"{style.SYMBOLS['time']} $\\leq$ {stop_time:g}")
+        panel.set(xlabel="scenes a second", title=f"{style.SYMBOLS['time']} $\\leq$ {stop_time:g}")
         panel.margins(x=0.15)
         panel.grid(axis="y", visible=False)
     panels[0].invert_yaxis()

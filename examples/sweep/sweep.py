@@ -19,6 +19,7 @@ import inspect
 import itertools
 import sys
 import time
+import uuid
 from collections.abc import Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
@@ -241,7 +242,8 @@ def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
     own = inspect.getmodule(_unwrapped(measure)[0])
     for module in dict.fromkeys((actuator_fmu, worker_side, own)):
         if module.__name__ != "__main__":  # Dask sends a function of the script itself as code
-            name = f"module {module.__name__}"
+            # a name of its own each time, as Client.upload_file does: what was sent last counts
+            name = f"{module.__name__}-{uuid.uuid4()}"
             # a scheduler in this process has the modules already, and must not load them a second time
             in_this_process = client.cluster is not None
             client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
