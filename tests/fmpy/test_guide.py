@@ -95,7 +95,7 @@ def test_program_runs_and_says_what_is_quoted(number, quoted, outcomes):
 
 
 def test_every_message_of_the_troubleshooting_page_is_tried():
-    text = (GUIDE / "6-troubleshooting.md").read_text()
+    text = (GUIDE / "7-troubleshooting.md").read_text()
     quoted = sum(parameter.values[1] is not None for parameter in programs() if "troubleshooting" in parameter.id)
     assert quoted == text.count("```text") >= 15
 
