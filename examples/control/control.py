@@ -141,14 +141,17 @@ def main() -> None:
             for name, kind in CONTROLLERS.items():
                 run = sampled.setdefault(name, {})[period] = close_loop(plant, model, kind, TRACKING, period=period)
                 note = "   pulled in" if run.pulled_in else ""
-                print(f"{period:<24g}{name:<24}{run.deviation(SINE_AT):>12.2e}{1e6 * np.median(run.seconds):>20.0f}{note}")
+                cost = 1e6 * np.median(run.seconds)
+                print(f"{period:<24g}{name:<24}{run.deviation(SINE_AT):>12.2e}{cost:>20.0f}{note}")
         beyond = {}
         for name, kind in CONTROLLERS.items():
             beyond[name] = close_loop(plant, model, kind, BEYOND, period=PERIOD)
         unguarded = close_loop(plant, model, FeedForwardPI, BEYOND, period=PERIOD, guarded=False)
         beyond["PI without the bound"] = unguarded
         for name, run in beyond.items():
-            end = f"pulled in at {plant_time(run):.0f}" if run.pulled_in else f"largest stretch {run.rows['stretch'].max():.4f}"
+            end = f"largest stretch {run.rows['stretch'].max():.4f}"
+            if run.pulled_in:
+                end = f"pulled in by {run.rows['time'][-1]:.0f}"
             print(f"target beyond the fold, {name}: {end}")
     figures = {
         "tracking": draw_tracking({name: runs[PERIOD] for name, runs in sampled.items()}),
@@ -157,11 +160,6 @@ def main() -> None:
     }
     for name, figure in figures.items():
         print(style.save(figure, arguments.output / f"{name}.png"))
-
-
-def plant_time(run: Run) -> float:
-    """When the last row was."""
-    return float(run.rows["time"][-1])
 
 
 if __name__ == "__main__":

@@ -34,8 +34,8 @@ class Measured:
 class FeedForwardPI:
     """PI with damping on φ², around the voltage that holds the target.
 
-    φ² = φ²(target) + P e + I ∫e dt + D e',  e = target − λ. The square root afterwards makes the force linear in
-    what the controller sets. The integral stands still while the voltage is at a bound.
+    φ² = φ²(target) + P e + I ∫e dt + D e',  e = target − λ. The square root afterwards makes the force
+    linear in what the controller sets. The integral stands still while the voltage is at a bound.
     """
 
     P, I, D = 4.0, 0.3, 25.0

@@ -165,7 +165,8 @@ def draw_pull_in(runs: dict[str, np.ndarray]) -> Figure:
     stretch.set_ylabel(f"{style.NAMES['lambda']}  {style.SYMBOLS['lambda']}")
     flag.set(yticks=(0, 1), yticklabels=("false", "true"), ylabel="pulled_in")
     flag.set_xlabel(f"{style.NAMES['time']}  {style.SYMBOLS['time']}")
-    stretch.set_title(f"Collapse after a voltage step, {style.setting(phi=PULL_IN['phi'])}, no surface effects", loc="left")
+    setting = style.setting(phi=PULL_IN["phi"])
+    stretch.set_title(f"Collapse after a voltage step, {setting}, no surface effects", loc="left")
     return figure
 
 

@@ -52,8 +52,8 @@ def draw(table: pa.Table) -> Figure:
     bar.ax.yaxis.set_major_formatter("{x:g}")
     map_axes.set_ylabel(f"voltage amplitude  {style.SYMBOLS['phi_ac']}")
     map_axes.grid(False)
-    title = f"(a)  {style.setting(**SURFACE_EFFECTS)}, {style.SYMBOLS['time']} $\\leq$ {STOP_TIME:g}: {len(table)} scenes"
-    map_axes.set_title(title, loc="left")
+    window = f"{style.SYMBOLS['time']} $\\leq$ {STOP_TIME:g}"
+    map_axes.set_title(f"(a)  {style.setting(**SURFACE_EFFECTS)}, {window}: {len(table)} scenes", loc="left")
     for index, amplitude in enumerate(CURVES):
         row = int(np.argmin(np.abs(amplitudes - amplitude)))
         label = style.setting(phi_ac=amplitudes[row])

@@ -60,8 +60,9 @@ def draw(table: pa.Table) -> Figure:
     time_image = axes.imshow(times, cmap="viridis", norm="log", **look)
     safe_image = axes.imshow(safe, cmap="Greys_r", vmin=0.3, vmax=1.1, **look)
     levels = np.unique(prestress)
-    for name, text, line in (("phi_pull_in", "dynamic threshold", "-"), ("phi_pull_in_static", "static threshold", "--")):
-        axes.plot(on_grid(name)[:, 0], levels, line, color=style.COLOURS[1], linewidth=2, label=text)
+    for name, kind, line in (("phi_pull_in", "dynamic", "-"), ("phi_pull_in_static", "static", "--")):
+        look = {"linestyle": line, "color": style.COLOURS[1], "linewidth": 2}
+        axes.plot(on_grid(name)[:, 0], levels, label=f"{kind} threshold", **look)
     style.label(axes, "phi", "S")
     axes.set(xlim=extent[:2], ylim=extent[2:])
     axes.grid(False)

@@ -31,8 +31,9 @@ def pack_linear(model: str, folder: Path) -> Path:
     with tempfile.TemporaryDirectory() as build:
         library = Path(build) / (model + fmpy.sharedLibraryExtension)
         # unused parameters are the price of a C interface that a model fills only in part
-        flags = ["-O2", "-shared", "-fPIC", "-Wall", "-Wextra", "-Wno-unused-parameter", f"-I{headers}", "-o", str(library)]
-        subprocess.run([*shlex.split(os.environ.get("CC", "cc")), *flags, str(HERE / f"{model}.c"), "-lm"], check=True)
+        flags = ["-O2", "-shared", "-fPIC", "-Wall", "-Wextra", "-Wno-unused-parameter", f"-I{headers}"]
+        compiler = shlex.split(os.environ.get("CC", "cc"))
+        subprocess.run([*compiler, *flags, "-o", str(library), str(HERE / f"{model}.c"), "-lm"], check=True)
         with zipfile.ZipFile(fmu, "w", zipfile.ZIP_DEFLATED) as archive:
             archive.write(HERE / f"{model}.xml", "modelDescription.xml")
             archive.write(library, f"binaries/{fmpy.platform}/{library.name}")

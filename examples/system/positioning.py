@@ -140,7 +140,8 @@ def steps_saved(found: dict[str, dict[float, float]], name: str) -> tuple[float,
     error = found[name][1.0]
     steps, held = (np.log(np.array(column[::-1])) for column in zip(*found["held"].items()))
     slope = (held[1] - held[0]) / (steps[1] - steps[0])
-    step = steps[0] + (np.log(error) - held[0]) / slope if np.log(error) < held[0] else np.interp(np.log(error), held, steps)
+    wanted = np.log(error)
+    step = np.interp(wanted, held, steps) if wanted > held[0] else steps[0] + (wanted - held[0]) / slope
     return error, float(np.exp(-step))
 
 

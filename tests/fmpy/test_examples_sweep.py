@@ -40,7 +40,7 @@ def cluster(tmp_path_factory):
     with (folder / "log").open("w") as log:
         commands = (
             [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", *one, *where],
-            [sys.executable, "-m", "distributed.cli.dask_worker", "--nworkers", str(WORKERS), "--nthreads", "1", *where],
+            [sys.executable, "-m", "distributed.cli.dask_worker", "--nworkers", f"{WORKERS}", "--nthreads", "1", *where],
         )
         started = [subprocess.Popen(words, stderr=log, **here) for words in commands]
         try:
