@@ -6,6 +6,8 @@ VENV := .venv
 PYTHON_IN_VENV := $(VENV)/bin/python
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
+EXAMPLES_INSTALLED := $(VENV)/installed-examples
+EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -19,12 +21,13 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all guide paper test test-platforms stress bench env clean
+.PHONY: help run fmu fmu-all guide paper examples test test-platforms stress bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
 	@echo 'make paper  regenerate the figures and tables of the paper into target/paper (some minutes);'
 	@echo '            WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
+	@echo 'make examples  run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
 	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
@@ -56,7 +59,13 @@ paper: fmu
 	$(call heading,Paper)
 	@PYTHONPATH=studies $(PYTHON_IN_VENV) -m paper $(if $(WORKERS),--workers $(WORKERS)) $(PAPER)
 
-test: $(INSTALLED)
+examples: fmu $(EXAMPLES_INSTALLED)
+	@rm -rf target/examples
+	@for example in $(EXAMPLES); do \
+	printf '\n==> examples/%s.py\n' $$example; \
+	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
+
+test: $(INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Format)
 	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
 	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
@@ -107,4 +116,9 @@ $(INSTALLED): requirements.txt
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the benchmark)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement benchmark/requirements.txt
+	@touch $@
+
+$(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of the examples)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement examples/requirements.txt
 	@touch $@

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -177,6 +177,28 @@ class ActuatorFmu:
             with self._reasons():
                 variables.write()
 
+    def set_input_derivatives(self, derivatives: Mapping[str, Sequence[float]]) -> None:
+        """Let inputs vary inside the steps to come: for each its first, second, … derivative by time at `time`.
+
+        They hold until the input is set again, so that they are set after its value.
+        """
+        triples = [
+            (self._variable(name).valueReference, order, value)
+            for name, values in derivatives.items()
+            for order, value in enumerate(values, start=1)
+        ]
+        if triples:
+            with self._reasons():
+                self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
+
+    def output_derivatives(self, name: str, order: int) -> list[float]:
+        """Derivatives of an output by time at the last communication point, from the first to the given order."""
+        if order == 0:
+            return []
+        references = [self._variable(name).valueReference] * order
+        with self._reasons():
+            return self._fmu.getRealOutputDerivatives(references, list(range(1, order + 1)))
+
     def get(self, *names: str):
         """Present value of one variable, or of several as a list in the given order."""
         found = {}
@@ -185,6 +207,23 @@ class ActuatorFmu:
                 variables.read()
             found.update(zip(group, variables.values))
         return found[names[0]] if len(names) == 1 else [found[name] for name in names]
+
+    def directional_derivatives(self, unknowns: Iterable[str], known: str) -> list[float]:
+        """∂unknown/∂known of each unknown at the present state, exact."""
+        references = [self._variable(name).valueReference for name in unknowns]
+        with self._reasons():
+            return self._fmu.getDirectionalDerivative(references, [self._variable(known).valueReference], [1.0])
+
+    @contextmanager
+    def looking_ahead(self):
+        """A block in which the instance may run on; after it, it is again where it was before."""
+        state, time = self._fmu.getFMUstate(), self.time
+        try:
+            yield
+        finally:
+            self._fmu.setFMUstate(state)
+            self._fmu.freeFMUstate(state)
+            self.time = time
 
     def advance(self, communication_step: float) -> bool:
         """One communication step. False if the FMU ended the run inside it (``on_pull_in`` = terminate);

@@ -1,0 +1,92 @@
+"""The worker's side of a sweep: one loaded actuator, reset between scenes.
+
+This file, with studies/actuator_fmu.py, is sent to each worker; it must import nothing else of the project.
+A measure is a function ``(actuator, scene) -> results`` that runs one scene, given as start values by
+variable name, and returns its results by column name.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import math
+import threading
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from actuator_fmu import ActuatorFmu
+from distributed import WorkerPlugin, get_worker
+
+Measure = Callable[[ActuatorFmu, Mapping[str, float]], Mapping[str, float]]
+
+_loaded = threading.local()
+
+
+class CarryFmu(WorkerPlugin):
+    """Puts the packed FMU into the folder of each worker, of one that joins late too."""
+
+    def __init__(self, name: str, packed: bytes):
+        self.name = name
+        self._packed = packed
+
+    def setup(self, worker) -> None:
+        # a folder for each content, so that a cluster that stays up may see the FMU change
+        path = Path(worker.local_directory) / hashlib.sha256(self._packed).hexdigest()[:16] / self.name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(self._packed)
+        worker.actuator_fmu = path
+
+
+def loaded_actuator(path: Path) -> ActuatorFmu:
+    """The actuator of this thread, loaded at its first scene and kept."""
+    if getattr(_loaded, "path", None) != path:
+        _loaded.actuator, _loaded.path = ActuatorFmu(path), path
+    return _loaded.actuator
+
+
+def run_batch(measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
+    """The task that the scheduler hands to a worker: `run_scenes` with the worker's actuator."""
+    return run_scenes(loaded_actuator(get_worker().actuator_fmu), measure, scenes)
+
+
+def run_scenes(actuator: ActuatorFmu, measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
+    """Results of each scene in order; of one that fails, its reason under ``failure``."""
+    results = []
+    for scene in scenes:
+        try:
+            results.append({**measure(actuator, scene), "failure": None})
+        except Exception as failure:  # whatever one scene raises, the others go on
+            reason = " ".join([f"{type(failure).__name__}: {failure}", *getattr(failure, "__notes__", [])])
+            results.append({"failure": reason})
+    return results
+
+
+def frequency_response(actuator: ActuatorFmu, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
+    """Half the range of λ₃ from rest to `stop_time` (the paper's λ₃ᵃ), in a single communication step.
+
+    The running extremes of the FMU are located exactly, so that nothing needs to be sampled.
+    """
+    actuator.start({**scene, "record_extremes": True})
+    actuator.advance(stop_time)
+    lowest, highest, pulled_in = actuator.get("lambda3_lowest", "lambda3_highest", "pulled_in")
+    return {
+        "lambda3_amplitude": (highest - lowest) / 2,
+        "lambda3_lowest": lowest,
+        "lambda3_highest": highest,
+        "pulled_in": bool(pulled_in),
+    }
+
+
+def pull_in(actuator: ActuatorFmu, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
+    """Whether and when the actuator is pulled in before `stop_time`, and the thresholds beside it."""
+    actuator.start({**scene, "record_extremes": True})
+    actuator.advance(stop_time)
+    pulled_in, time, lowest, dynamic, static = actuator.get(
+        "pulled_in", "pull_in_time", "lambda3_lowest", "phi_pull_in", "phi_pull_in_static"
+    )
+    return {
+        "pulled_in": bool(pulled_in),
+        "pull_in_time": time if math.isfinite(time) else None,
+        "lambda3_lowest": lowest,
+        "phi_pull_in": dynamic,
+        "phi_pull_in_static": static,
+    }

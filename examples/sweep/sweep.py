@@ -1,0 +1,251 @@
+"""Tens of thousands of scenes on the processes of one machine, or unchanged on a Dask cluster.
+
+    from sweep import grid, sweep
+    from scenes import pull_in
+
+    table = sweep(partial(pull_in, stop_time=500.0), grid(phi=voltages, S=prestresses), Path("map.parquet"))
+
+The scenes travel in batches. A batch that comes back is written at once, next to the result, as a small
+Parquet file; a sweep that was stopped goes on from these. The result holds one row a scene: its number,
+its parameters, its results, and the reason if it failed. The FMU and the modules that a worker needs
+(the one that defines the measure too) are sent to it, so that a worker on another machine needs only the
+packages of requirements.txt and examples/requirements.txt.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+import itertools
+import sys
+import time
+import uuid
+from collections.abc import Mapping, Sequence
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+from distributed import Client, LocalCluster, as_completed
+from distributed.deploy import Cluster
+from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
+
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
+sys.path.insert(0, str(STUDIES))
+
+import actuator_fmu  # noqa: E402  (the path must be set first)
+import scenes as worker_side  # noqa: E402
+from actuator_fmu import DEFAULT_FMU  # noqa: E402
+
+FINGERPRINT = b"sweep"
+BATCH = 100
+"""Scenes that travel together: many enough to hide the millisecond that the scheduler takes for a task."""
+
+
+class AnotherSweep(ValueError):
+    """The output holds results of other scenes, another measure or another FMU."""
+
+
+class Unfinished(RuntimeError):
+    """Some batches were lost, with the machine they ran on for example; the same call goes on from the rest."""
+
+
+def grid(**axes: Sequence[float]) -> dict[str, np.ndarray]:
+    """Every combination of the given values as columns, the last name varying fastest."""
+    columns = zip(*itertools.product(*axes.values()))
+    return {name: np.asarray(column, dtype=float) for name, column in zip(axes, columns)}
+
+
+def sweep(
+    measure: worker_side.Measure,
+    scenes: Mapping[str, Sequence[float]],
+    output: Path,
+    *,
+    cluster: str | Cluster | None = None,
+    workers: int | None = None,
+    batch: int = BATCH,
+    fmu: Path = DEFAULT_FMU,
+) -> pa.Table:
+    """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
+
+    `scenes` holds a column of start values for each varied variable. `cluster` is the address of a Dask
+    scheduler, or one of Dask's cluster objects; without it `workers` processes are started here (default:
+    one a processor core). Raises
+    `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost.
+    """
+    scenes = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
+    results = _Results(output, _fingerprint(measure, scenes, fmu))
+    count = len(next(iter(scenes.values())))
+    pending = np.setdiff1d(np.arange(count), results.finished())
+    progress = Progress(count, count - len(pending))
+    lost: list[str] = []
+    if len(pending):
+        with _client(cluster, workers) as client:
+            _equip(client, measure, fmu)
+            progress.begin(len(client.scheduler_info(n_workers=-1)["workers"]))
+            batches = {}
+            for start in range(0, len(pending), batch):
+                numbers = pending[start : start + batch]
+                rows = [{name: float(column[k]) for name, column in scenes.items()} for k in numbers]
+                batches[client.submit(worker_side.run_batch, measure, rows, pure=False)] = (numbers, rows)
+            for future in as_completed(batches):
+                numbers, rows = batches.pop(future)
+                if future.status != "finished":
+                    lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {future.exception()}")
+                    continue
+                found = future.result()
+                results.add(numbers, rows, found)
+                progress.advance([(k, row["failure"]) for k, row in zip(numbers, found) if row["failure"]], len(found))
+    progress.close()
+    if lost:
+        raise Unfinished("\n".join([f"{len(lost)} batches were lost; run again to go on from the others", *lost[:5]]))
+    return results.complete()
+
+
+class Progress:
+    """What is done, how fast, how long it will take, and each failed scene up to ten."""
+
+    REPORTED = 10
+
+    def __init__(self, count: int, done: int):
+        self._count, self._done, self._before, self._failed = count, done, done, 0
+        self._start = self._shown = time.perf_counter()
+
+    def begin(self, workers: int) -> None:
+        """The opening line; scenes are timed from here on, the start of the workers is not."""
+        before = f"going on from {self._before}: " if self._before else ""
+        print(f"{before}{self._count - self._before} scenes on {workers} workers", flush=True)
+        self._start = self._shown = time.perf_counter()
+
+    def advance(self, failures: list[tuple[int, str]], count: int) -> None:
+        """Count scenes; a line a second at most."""
+        for number, reason in failures:
+            self._failed += 1
+            if self._failed <= self.REPORTED:
+                print(f"scene {number} failed: {reason}", flush=True)
+        self._done += count
+        if time.perf_counter() - self._shown >= 1:
+            self._shown = time.perf_counter()
+            rate = self._rate()
+            left = (self._count - self._done) / rate
+            print(f"{self._done:>8} of {self._count} scenes, {rate:.0f} a second, {left:.0f} s left", flush=True)
+
+    def close(self) -> None:
+        """The closing line."""
+        ran, taken = self._done - self._before, time.perf_counter() - self._start
+        speed = f"{ran} run in {taken:.1f} s, {self._rate():.0f} a second" if ran else "nothing left to run"
+        print(f"{self._done} of {self._count} scenes done, {self._failed} failed now; {speed}", flush=True)
+
+    def _rate(self) -> float:
+        return (self._done - self._before) / (time.perf_counter() - self._start)
+
+
+class _Results:
+    """The result file, and the parts that grow beside it until it is complete."""
+
+    def __init__(self, output: Path, fingerprint: bytes):
+        self._output, self._fingerprint = output, fingerprint
+        self._folder = output.with_name(output.name + ".parts")
+
+    def finished(self) -> np.ndarray:
+        """Numbers of the scenes whose results are there."""
+        files = self._parts() or ([self._output] if self._output.exists() else [])
+        for path in files:
+            if (parquet.read_schema(path).metadata or {}).get(FINGERPRINT) != self._fingerprint:
+                raise AnotherSweep(
+                    f"{path} holds another sweep: its scenes, measure or FMU differ; remove it or write elsewhere"
+                )
+        return np.concatenate(
+            [np.empty(0, int), *(parquet.read_table(path, columns=["scene"])["scene"].to_numpy() for path in files)]
+        )
+
+    def add(self, numbers: np.ndarray, rows: list[dict], found: list[dict]) -> None:
+        """Write one batch; whole or not at all, should the sweep be stopped meanwhile."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        table = pa.Table.from_pylist(
+            [{"scene": int(k), **row, **result} for k, row, result in zip(numbers, rows, found)],
+            schema=_schema(rows, found).with_metadata({FINGERPRINT: self._fingerprint}),
+        )
+        self._write(table, self._folder / f"{numbers[0]:09d}.parquet")
+
+    def complete(self) -> pa.Table:
+        """Join the parts to the result file, in the order of the scenes."""
+        parts = self._parts()
+        if parts:
+            # a batch in which every scene failed has no columns of results
+            table = pa.concat_tables([parquet.read_table(path) for path in parts], promote_options="default")
+            self._write(table.sort_by("scene"), self._output)
+            for path in parts:
+                path.unlink()
+            self._folder.rmdir()
+        return parquet.read_table(self._output)
+
+    def _parts(self) -> list[Path]:
+        return sorted(self._folder.glob("*.parquet"))
+
+    @staticmethod
+    def _write(table: pa.Table, path: Path) -> None:
+        unfinished = path.with_suffix(".unfinished")
+        parquet.write_table(table, unfinished)
+        unfinished.replace(path)
+
+
+def _schema(rows: list[dict], found: list[dict]) -> pa.Schema:
+    """Columns of a batch: number, parameters, results (Boolean or double), reason of a failure."""
+    results = next((row for row in found if row["failure"] is None), {})
+    return pa.schema(
+        [("scene", pa.int64())]
+        + [(name, pa.float64()) for name in rows[0]]
+        + [
+            (name, pa.bool_() if isinstance(value, bool) else pa.float64())
+            for name, value in results.items()
+            if name != "failure"
+        ]
+        + [("failure", pa.string())]
+    )
+
+
+def _fingerprint(measure: worker_side.Measure, scenes: Mapping[str, np.ndarray], fmu: Path) -> bytes:
+    """Tells sweeps apart: the FMU, the code and settings of the measure, the scenes."""
+    function, settings = _unwrapped(measure)
+    digest = hashlib.sha256(fmu.read_bytes())
+    digest.update(f"{inspect.getsource(function)}{sorted(settings.items())}".encode())
+    for name, column in scenes.items():
+        digest.update(name.encode() + column.tobytes())
+    return digest.hexdigest().encode()
+
+
+def _unwrapped(measure: worker_side.Measure) -> tuple[worker_side.Measure, dict]:
+    """The function of a measure, and the settings that `functools.partial` gave it."""
+    return (measure.func, measure.keywords) if isinstance(measure, partial) else (measure, {})
+
+
+@contextmanager
+def _client(cluster: str | Cluster | None, workers: int | None):
+    if cluster is None:
+        with local_cluster(workers) as own, Client(own) as client:
+            yield client
+    else:
+        with Client(cluster) as client:
+            yield client
+
+
+def local_cluster(workers: int | None) -> LocalCluster:
+    """Worker processes on this machine, of one thread each: Python outside the FMU is most of a short scene."""
+    return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
+
+
+def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
+    """Give each worker, of now and later, the modules and the FMU."""
+    own = inspect.getmodule(_unwrapped(measure)[0])
+    for module in dict.fromkeys((actuator_fmu, worker_side, own)):
+        if module.__name__ != "__main__":  # Dask sends a function of the script itself as code
+            # a name of its own each time, as Client.upload_file does: what was sent last counts
+            name = f"{module.__name__}-{uuid.uuid4()}"
+            # a scheduler in this process has the modules already, and must not load them a second time
+            in_this_process = client.cluster is not None
+            client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
+            client.register_plugin(UploadFile(module.__file__), name=name)
+    client.register_plugin(worker_side.CarryFmu(fmu.name, fmu.read_bytes()))

@@ -1,0 +1,16 @@
+"""Measures in a file of their own, as a user of the sweep example writes them."""
+
+import os
+
+
+def whose(actuator, scene):
+    """Which process and which actuator ran the scene."""
+    actuator.start(scene)
+    return {"process": os.getpid(), "actuator": id(actuator)}
+
+
+def fatal(actuator, scene):
+    """Takes its worker down with the scene phi = 0.5."""
+    if scene["phi"] == 0.5:
+        os._exit(1)
+    return {"twice": 2 * scene["phi"]}

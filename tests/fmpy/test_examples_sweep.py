@@ -1,0 +1,201 @@
+"""The sweep example, on a Dask cluster whose processes know nothing of this checkout, and on its own workers."""
+
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+from functools import partial
+from pathlib import Path
+
+import dask
+import numpy as np
+import pyarrow.parquet as parquet
+import pytest
+from distributed import Client
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+EXAMPLE = REPOSITORY / "examples" / "sweep"
+sys.path.insert(0, str(EXAMPLE))
+
+import command  # noqa: E402
+import references  # noqa: E402
+import scenes  # noqa: E402
+import sweep as engine  # noqa: E402
+from sweep_measures import fatal, whose  # noqa: E402
+
+WORKERS = 2
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory):
+    """The address of a scheduler with two workers, started by Dask's own commands in a folder of their own."""
+    folder = tmp_path_factory.mktemp("cluster")
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    here = {"cwd": folder, "env": environment, "stdout": subprocess.DEVNULL}
+    found = folder / "scheduler.json"
+    where = ["--scheduler-file", str(found), "--no-dashboard"]
+    one = ["--host", "127.0.0.1"]
+    with (folder / "log").open("w") as log:
+        commands = (
+            [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", *one, *where],
+            [sys.executable, "-m", "distributed.cli.dask_worker", "--nworkers", f"{WORKERS}", "--nthreads", "1", *where],
+        )
+        started = [subprocess.Popen(words, stderr=log, **here) for words in commands]
+        try:
+            yield wait_for_address(found, started, folder / "log")
+        finally:
+            for process in reversed(started):
+                process.terminate()
+                process.wait(timeout=30)
+
+
+def wait_for_address(path, processes, log) -> str:
+    deadline = time.monotonic() + 60
+    while not (path.exists() and path.stat().st_size):
+        assert all(process.poll() is None for process in processes) and time.monotonic() < deadline, log.read_text()
+        time.sleep(0.05)
+    address = json.loads(path.read_text())["address"]
+    with Client(address) as client:
+        client.wait_for_workers(WORKERS, timeout=60)
+    return address
+
+
+def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
+    for k, reference in enumerate(references.driven_amplitudes()):
+        table = engine.sweep(
+            partial(scenes.frequency_response, stop_time=reference.stop_time),
+            {name: [value] for name, value in reference.scene().items()},
+            tmp_path / f"{k}.parquet",
+            cluster=cluster,
+            fmu=fmu_path,
+        )
+        assert table["lambda3_amplitude"].to_pylist() == pytest.approx([reference.amplitude], abs=1e-8)
+    assert k
+
+
+def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
+    table = engine.sweep(
+        whose, engine.grid(phi=np.linspace(0, 0.6, 200)), tmp_path / "whose.parquet",
+        cluster=cluster, batch=5, fmu=fmu_path,
+    )
+    pairs = set(zip(table["process"].to_pylist(), table["actuator"].to_pylist()))
+    assert len(table) == 200 and len(pairs) == len({process for process, _ in pairs}) == WORKERS
+
+
+def test_a_failing_scene_is_reported_and_the_rest_kept(cluster, fmu_path, tmp_path, capsys):
+    voltages = [0.1, 5000.0, 0.2, 0.9, float("nan")]
+    table = engine.sweep(
+        partial(scenes.pull_in, stop_time=200.0), engine.grid(phi=voltages), tmp_path / "some.parquet",
+        cluster=cluster, batch=3, fmu=fmu_path,
+    )
+    assert table["pulled_in"].to_pylist() == [False, None, False, True, None]
+    failures = table["failure"].to_pylist()
+    assert [failure is None for failure in failures] == [True, False, True, True, False]
+    assert "phi" in failures[1] and "5000" in failures[1]
+    printed = capsys.readouterr().out
+    assert "scene 1 failed" in printed and "5 of 5 scenes done, 2 failed now" in printed
+
+
+def test_a_stopped_sweep_goes_on_from_what_is_done(cluster, fmu_path, tmp_path, capsys, monkeypatch):
+    output = tmp_path / "stopped.parquet"
+    columns = engine.grid(phi=np.linspace(0.1, 0.6, 60), S=[0.1])
+    measure = partial(scenes.pull_in, stop_time=50.0)
+    write, written = engine._Results.add, []
+
+    def stop_after_three(results, numbers, rows, found):
+        if len(written) == 3:
+            raise KeyboardInterrupt
+        write(results, numbers, rows, found)
+        written.extend([numbers])
+
+    with monkeypatch.context() as patched:
+        patched.setattr(engine._Results, "add", stop_after_three)
+        with pytest.raises(KeyboardInterrupt):
+            engine.sweep(measure, columns, output, cluster=cluster, batch=7, fmu=fmu_path)
+    done = sum(map(len, written))
+    assert not output.exists() and len(written) == 3
+
+    capsys.readouterr()
+    table = engine.sweep(measure, columns, output, cluster=cluster, batch=11, fmu=fmu_path)
+    assert f"going on from {done}: {60 - done} scenes" in capsys.readouterr().out
+    at_once = engine.sweep(measure, columns, tmp_path / "at_once.parquet", cluster=cluster, fmu=fmu_path)
+    assert table.equals(at_once) and table.equals(parquet.read_table(output))
+    assert [path.name for path in sorted(tmp_path.iterdir())] == ["at_once.parquet", "stopped.parquet"]
+    np.testing.assert_array_equal(command.column(table, "phi"), columns["phi"])
+
+    capsys.readouterr()
+    assert engine.sweep(measure, columns, output, cluster="tcp://nowhere:1", fmu=fmu_path).equals(table)
+    assert "nothing left to run" in capsys.readouterr().out
+
+
+def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
+    output = tmp_path / "first.parquet"
+    short, long = (partial(scenes.pull_in, stop_time=time) for time in (10.0, 20.0))
+    engine.sweep(short, engine.grid(phi=[0.1, 0.2]), output, cluster=cluster, fmu=fmu_path)
+    for measure, axes in ((long, {"phi": [0.1, 0.2]}), (short, {"phi": [0.1, 0.3]})):
+        with pytest.raises(engine.AnotherSweep, match="remove it or write elsewhere"):
+            engine.sweep(measure, engine.grid(**axes), output, cluster=cluster, fmu=fmu_path)
+
+
+def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):
+    """A batch that was on a dying worker too often counts as lost with it; all others must be there."""
+    output, columns = tmp_path / "lost.parquet", engine.grid(phi=np.arange(0.1, 0.85, 0.1).round(1))
+    with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
+        with pytest.raises(engine.Unfinished) as unfinished:
+            engine.sweep(fatal, columns, output, workers=1, batch=2, fmu=fmu_path)
+    lost = {int(first) for first in re.findall(r"scenes (\d+) to", str(unfinished.value))}
+    kept = [parquet.read_table(path)["scene"].to_pylist() for path in (tmp_path / "lost.parquet.parts").iterdir()]
+    assert 4 in lost and sorted(kept) == [[k, k + 1] for k in (0, 2, 4, 6) if k not in lost] != []
+
+
+def test_the_pull_in_map_agrees_with_the_thresholds(cluster, fmu_path, tmp_path):
+    options = ["--voltages", "40", "--prestresses", "12"]
+    printed = run_script("pull_in_map.py", fmu_path, tmp_path, "--scheduler", cluster, *options)
+    assert "all but 0 of 480" in printed
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["pull_in_map.parquet", "pull_in_map.png"]
+    pulled_in = parquet.read_table(tmp_path / "pull_in_map.parquet")["pulled_in"].to_pylist()
+    assert 100 < sum(pulled_in) < 380
+
+
+def test_the_frequency_response_is_drawn(cluster, fmu_path, tmp_path):
+    options = ["--amplitudes", "4", "--frequencies", "25"]
+    run_script("frequency_response.py", fmu_path, tmp_path, "--scheduler", cluster, *options)
+    assert (tmp_path / "frequency_response.png").stat().st_size > 10_000
+    table = parquet.read_table(tmp_path / "frequency_response.parquet")
+    assert len(table) == 100 and min(table["lambda3_amplitude"].to_pylist()) > 0
+
+
+def test_the_sweep_of_the_page_runs(tmp_path):
+    page = (EXAMPLE / "README.md").read_text()
+    (code,) = re.findall(r"^```python\n(.*?)^```", page, flags=re.MULTILINE | re.DOTALL)
+    (tmp_path / "own.py").write_text(code)
+    done = subprocess.run(
+        [sys.executable, "own.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(EXAMPLE)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    table = parquet.read_table(tmp_path / "turning_stretch.parquet")
+    assert len(table) == 60 and table["failure"].null_count == 60
+
+
+def test_the_rates_are_measured(fmu_path, tmp_path):
+    printed = run_script("rates.py", fmu_path, tmp_path, "--scenes", "20", "--lengths", "1", "--workers", "1")
+    assert printed.count("scenes a second\n") == 3
+    assert (tmp_path / "rates.csv").read_text().count("\n") == 4 and (tmp_path / "rates.png").exists()
+
+
+def run_script(name, fmu, output, *options) -> str:
+    done = subprocess.run(
+        [sys.executable, EXAMPLE / name, "--fmu", fmu, "--output", output, *options],
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
