@@ -24,6 +24,9 @@ mod present;
 /// Substeps that one call may take: about a second of work.
 const MOST_SUBSTEPS: u32 = 2_000_000;
 
+/// What rounding may leave of a step that has been made.
+const LAST_BITS: f64 = 1e-18;
+
 /// A motion that is followed forward in time. It can be stored, and goes on bit
 /// for bit on processors of the same SIMD level; check what was stored with
 /// [`Trajectory::is_sound`] where it may have been tampered with.
@@ -221,10 +224,11 @@ impl Trajectory {
                 self.arrive(at);
                 return Ok(Progress::Stopped { limit, after });
             }
-            if target.since(self.end()) <= 0.0 {
-                // Without a piece, strides came to it but for the last bits of the time.
+            let rest = target.since(self.end());
+            if rest <= LAST_BITS * step {
+                // Without a piece, strides came to it.
                 if self.pieces.count() > 0 {
-                    self.arrive(target);
+                    self.arrive(if rest > 0.0 { self.end() } else { target });
                 }
                 return Ok(Progress::Whole);
             }
@@ -235,7 +239,6 @@ impl Trajectory {
                     after,
                 });
             }
-            let rest = target.since(self.end());
             let added = if clear && self.strides_over(equation, rest) {
                 Ok(self.stride(equation, target, &mut budget, &mut clear))
             } else {
