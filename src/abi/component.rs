@@ -23,6 +23,17 @@ pub struct Component {
     pub host: Host,
 }
 
+impl Component {
+    /// Ends a call in which there was a panic.
+    #[cold]
+    fn give_up(&mut self, function: &str) -> fmi2Status {
+        self.instance.give_up();
+        let severity = Severity::Fatal;
+        let text = "an internal error; free this instance and report the fault".into();
+        self.host.refuse(function, &Fault { severity, text })
+    }
+}
+
 /// The host's side: who is told what.
 pub struct Host {
     /// Copied by value: hosts may free or reuse the structure that they passed.
@@ -97,6 +108,7 @@ impl Host {
     }
 
     /// Tells the host why a call was not done, and gives its status.
+    #[cold]
     pub fn refuse(&self, function: &str, fault: &Fault) -> fmi2Status {
         let (status, category) = match fault.severity {
             Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
@@ -107,6 +119,8 @@ impl Host {
         status
     }
 
+    /// Tells the host of something in a call that was done, and gives its status.
+    #[cold]
     fn announce(&self, function: &str, event: &Event) -> fmi2Status {
         let (status, category) = if event.warning {
             (fmi2Status_fmi2Warning, WARNINGS)
@@ -132,18 +146,14 @@ pub fn guarded(
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
         return fmi2Status_fmi2Error;
     };
-    if let Err(fault) = component.instance.check(call) {
-        return component.host.refuse(function, &fault);
-    }
-    match catch_unwind(AssertUnwindSafe(|| body(component))) {
+    let outcome = match component.instance.check(call) {
+        Ok(()) => catch_unwind(AssertUnwindSafe(|| body(component))),
+        Err(fault) => Ok(Err(fault)),
+    };
+    match outcome {
         Ok(Ok(None)) => fmi2Status_fmi2OK,
         Ok(Ok(Some(event))) => component.host.announce(function, &event),
         Ok(Err(fault)) => component.host.refuse(function, &fault),
-        Err(_) => {
-            component.instance.give_up();
-            let text = "an internal error; free this instance and report the fault".into();
-            let severity = Severity::Fatal;
-            component.host.refuse(function, &Fault { severity, text })
-        }
+        Err(_) => component.give_up(function),
     }
 }
