@@ -30,7 +30,7 @@ impl Component {
         self.instance.give_up();
         let severity = Severity::Fatal;
         let text = "an internal error; free this instance and report the fault".into();
-        self.host.refuse(function, &Fault { severity, text })
+        self.host.refuse(function, Fault { severity, text })
     }
 }
 
@@ -109,7 +109,7 @@ impl Host {
 
     /// Tells the host why a call was not done, and gives its status.
     #[cold]
-    pub fn refuse(&self, function: &str, fault: &Fault) -> fmi2Status {
+    pub fn refuse(&self, function: &str, fault: Fault) -> fmi2Status {
         let (status, category) = match fault.severity {
             Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
             Severity::Error => (fmi2Status_fmi2Error, ERRORS),
@@ -121,7 +121,7 @@ impl Host {
 
     /// Tells the host of something in a call that was done, and gives its status.
     #[cold]
-    fn announce(&self, function: &str, event: &Event) -> fmi2Status {
+    fn announce(&self, function: &str, event: Event) -> fmi2Status {
         let (status, category) = if event.warning {
             (fmi2Status_fmi2Warning, WARNINGS)
         } else {
@@ -146,14 +146,13 @@ pub fn guarded(
     let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
         return fmi2Status_fmi2Error;
     };
-    let outcome = match component.instance.check(call) {
-        Ok(()) => catch_unwind(AssertUnwindSafe(|| body(component))),
-        Err(fault) => Ok(Err(fault)),
-    };
-    match outcome {
+    if let Err(fault) = component.instance.check(call) {
+        return component.host.refuse(function, fault);
+    }
+    match catch_unwind(AssertUnwindSafe(|| body(component))) {
         Ok(Ok(None)) => fmi2Status_fmi2OK,
-        Ok(Ok(Some(event))) => component.host.announce(function, &event),
-        Ok(Err(fault)) => component.host.refuse(function, &fault),
+        Ok(Ok(Some(event))) => component.host.announce(function, event),
+        Ok(Err(fault)) => component.host.refuse(function, fault),
         Err(_) => component.give_up(function),
     }
 }
