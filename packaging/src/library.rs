@@ -40,14 +40,12 @@ pub fn compile(
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&project.workspace_root)
         .arg("rustc")
-        .args(toolchain.flags)
         .args(["--release", "--locked", "--lib"])
         .args(["--crate-type", "staticlib"])
         .args(["--package", package.name.as_str()])
         .args(["--target", platform.triple])
         .args(["--message-format", "json-render-diagnostics"])
         .env("RUSTC", &toolchain.rustc)
-        .envs(toolchain.environment.iter().cloned())
         .envs(c_environment(zig, platform, &stand, folder)?)
         // This replaces RUSTFLAGS, so that the binary does not depend on them.
         .env(
