@@ -212,7 +212,8 @@ fn mathml(formula: &CowStr, display_mode: DisplayMode) -> Result<Event<'static>>
     };
     let mut text = String::new();
     push_mathml(&mut text, parts.into_iter(), config)?;
-    Ok(Event::InlineHtml(text.into()))
+    // `pulldown_latex` writes the micro sign for \mu; browsers slant the Greek letter only.
+    Ok(Event::InlineHtml(text.replace('\u{b5}', "\u{3bc}").into()))
 }
 
 /// A figure as an address that holds it.

@@ -2,7 +2,6 @@
 //! FMU; `cargo fmu describe`: writes the checked-in `modelDescription.xml`.
 
 mod archive;
-mod debian;
 mod guide;
 mod icon;
 mod inspect;
@@ -24,7 +23,6 @@ use dielectric_elastomer_actuator::abi::EXPORTED_NAMES;
 use dielectric_elastomer_actuator::description::{self, MODEL_IDENTIFIER};
 
 use archive::Entries;
-use debian::Unpacked;
 use inspect::Binary;
 use platform::{PLATFORMS, Platform};
 use toolchain::Toolchain;
@@ -57,12 +55,6 @@ enum Verb {
     },
     /// Write the user's guide to target/guide
     Guide,
-    /// Unpack packages of Debian into target/debian and print the folder
-    Unpack {
-        /// Names of packages; the first names the folder
-        #[arg(required = true)]
-        packages: Vec<String>,
-    },
 }
 
 fn main() -> ExitCode {
@@ -71,7 +63,6 @@ fn main() -> ExitCode {
         Verb::Pack => pack(arguments.all),
         Verb::Describe { check } => describe(check),
         Verb::Guide => write_guide(),
-        Verb::Unpack { packages } => unpack(&packages),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -89,7 +80,7 @@ fn pack(all: bool) -> Result<()> {
     let zig = Zig::find()?;
     let folder = project.workspace_root.join("target/fmu");
     let count = if all { PLATFORMS.len() } else { 1 };
-    let (built, missing) = toolchains(&project, &PLATFORMS[..count])?;
+    let (built, missing) = toolchains(&PLATFORMS[..count])?;
     let mut entries = Entries::new();
     entries.insert("modelDescription.xml".into(), description::xml().into());
     entries.insert("model.png".into(), icon::png()?);
@@ -121,20 +112,11 @@ fn pack(all: bool) -> Result<()> {
 }
 
 /// The platforms that can be built for, each with its compiler, and a line on each of the others.
-fn toolchains<'a>(
-    project: &Metadata,
-    platforms: &'a [Platform],
-) -> Result<(Vec<(&'a Platform, Toolchain)>, String)> {
-    let version = library::root_package(project)?
-        .rust_version
-        .as_ref()
-        .context("Cargo.toml states no rust-version")?
-        .to_string();
-    let shelf = toolchain::shelf(project.target_directory.as_std_path());
+fn toolchains(platforms: &[Platform]) -> Result<(Vec<(&Platform, Toolchain)>, String)> {
     let mut built = Vec::new();
     let mut missing = String::new();
     for platform in platforms {
-        match Toolchain::find(platform, &version, &shelf) {
+        match Toolchain::find(platform) {
             Ok(toolchain) => built.push((platform, toolchain)),
             Err(error) => missing += &format!("  {}: not packed. {error:#}\n", platform.folder),
         }
@@ -176,16 +158,6 @@ fn write_guide() -> Result<()> {
     fs::create_dir_all(project.target_directory.join("guide"))?;
     fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
     println!("{path}");
-    Ok(())
-}
-
-/// Unpacks Debian's packages and prints where.
-fn unpack(packages: &[String]) -> Result<()> {
-    let project = project()?;
-    let shelf = toolchain::shelf(project.target_directory.as_std_path());
-    let names: Vec<&str> = packages.iter().map(String::as_str).collect();
-    let unpacked = Unpacked::get(&names, &shelf)?;
-    println!("{}", unpacked.root().display());
     Ok(())
 }
 

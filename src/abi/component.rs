@@ -23,6 +23,17 @@ pub struct Component {
     pub host: Host,
 }
 
+impl Component {
+    /// Ends a call in which there was a panic.
+    #[cold]
+    fn give_up(&mut self, function: &str) -> fmi2Status {
+        self.instance.give_up();
+        let severity = Severity::Fatal;
+        let text = "an internal error; free this instance and report the fault".into();
+        self.host.refuse(function, Fault { severity, text })
+    }
+}
+
 /// The host's side: who is told what.
 pub struct Host {
     /// Copied by value: hosts may free or reuse the structure that they passed.
@@ -97,7 +108,8 @@ impl Host {
     }
 
     /// Tells the host why a call was not done, and gives its status.
-    pub fn refuse(&self, function: &str, fault: &Fault) -> fmi2Status {
+    #[cold]
+    pub fn refuse(&self, function: &str, fault: Fault) -> fmi2Status {
         let (status, category) = match fault.severity {
             Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
             Severity::Error => (fmi2Status_fmi2Error, ERRORS),
@@ -107,7 +119,9 @@ impl Host {
         status
     }
 
-    fn announce(&self, function: &str, event: &Event) -> fmi2Status {
+    /// Tells the host of something in a call that was done, and gives its status.
+    #[cold]
+    fn announce(&self, function: &str, event: Event) -> fmi2Status {
         let (status, category) = if event.warning {
             (fmi2Status_fmi2Warning, WARNINGS)
         } else {
@@ -133,17 +147,12 @@ pub fn guarded(
         return fmi2Status_fmi2Error;
     };
     if let Err(fault) = component.instance.check(call) {
-        return component.host.refuse(function, &fault);
+        return component.host.refuse(function, fault);
     }
     match catch_unwind(AssertUnwindSafe(|| body(component))) {
         Ok(Ok(None)) => fmi2Status_fmi2OK,
-        Ok(Ok(Some(event))) => component.host.announce(function, &event),
-        Ok(Err(fault)) => component.host.refuse(function, &fault),
-        Err(_) => {
-            component.instance.give_up();
-            let text = "an internal error; free this instance and report the fault".into();
-            let severity = Severity::Fatal;
-            component.host.refuse(function, &Fault { severity, text })
-        }
+        Ok(Ok(Some(event))) => component.host.announce(function, event),
+        Ok(Err(fault)) => component.host.refuse(function, fault),
+        Err(_) => component.give_up(function),
     }
 }

@@ -121,7 +121,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             Box::into_raw(Box::new(Component { instance, host })).cast()
         }
         Err(fault) => {
-            host.refuse("fmi2Instantiate", &fault);
+            host.refuse("fmi2Instantiate", fault);
             std::ptr::null_mut()
         }
     }

@@ -108,8 +108,15 @@ impl Instance {
     /// Error where it does not, Fatal after a fatal error.
     pub fn check(&self, call: Call) -> Result<(), Fault> {
         if self.phase.permits(call) && call.is_part_of(self.interface) {
-            return Ok(());
+            Ok(())
+        } else {
+            Err(self.refusal(call))
         }
+    }
+
+    /// Why the call is not allowed at present.
+    #[cold]
+    fn refusal(&self, call: Call) -> Fault {
         let severity = if self.phase == Phase::Fatal {
             Severity::Fatal
         } else {
@@ -126,7 +133,7 @@ impl Instance {
                 self.phase.name()
             ),
         };
-        Err(Fault { severity, text })
+        Fault { severity, text }
     }
 
     /// What can be read at present.

@@ -10,6 +10,7 @@ import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import debian
 import fmpy
 import pytest
 
@@ -38,11 +39,10 @@ class Runner:
 
 def unpacked(*packages: str) -> Path:
     """Debian's packages, unpacked below target; the test is skipped where that cannot be done."""
-    done = subprocess.run(["cargo", "fmu", "unpack", *packages], cwd=REPOSITORY, capture_output=True, text=True)
-    if done.returncode != 0:
-        reason = done.stderr.strip().splitlines()[-1:] or ["cargo fmu failed"]
-        pytest.skip(f"{packages[0]} is not installed, and Debian's package cannot be unpacked: {reason[0]}")
-    return Path(done.stdout.strip().splitlines()[-1])
+    try:
+        return debian.unpacked(*packages)
+    except RuntimeError as error:
+        pytest.skip(f"{packages[0]} is not installed, and Debian's package cannot be unpacked: {error}")
 
 
 def native() -> Runner:
