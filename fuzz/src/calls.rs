@@ -1,6 +1,6 @@
 //! Calls in any order with any arguments (`tests/calls/script.rs`).
 #![no_main]
-#![allow(unsafe_code)]
+#![allow(dead_code)]
 
 #[path = "../../tests/calls/host.rs"]
 mod host;

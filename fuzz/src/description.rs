@@ -1,7 +1,7 @@
 //! Variables with any texts and numbers: what the writer of `modelDescription.xml` writes, the
 //! reader of the crate `fmi`, which knows nothing of it, reads back.
 #![no_main]
-#![allow(dead_code, missing_docs)]
+#![allow(dead_code)]
 
 #[path = "../../src/description/schema.rs"]
 mod schema;
