@@ -223,3 +223,38 @@ fn bad_arguments_are_refused_and_change_nothing() {
         assert_eq!(fmi2NewDiscreteStates(c, null_mut()), ERROR);
     }
 }
+
+#[test]
+fn states_where_no_result_would_be_a_number_are_refused() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    let states = |position: f64, rate: f64| unsafe {
+        fmi2SetContinuousStates(host.component, [position, rate].as_ptr(), 2)
+    };
+    for (position, rate) in [
+        (0.0, 0.0),
+        (1e-310, 1.0),
+        (-3.5e285, 0.0),
+        (1.0, 1e300),
+        (f64::NAN, 0.0),
+    ] {
+        assert_eq!(states(position, rate), ERROR);
+        assert!(
+            host.last_line().contains("smaller step"),
+            "{}",
+            host.last_line()
+        );
+        assert_eq!(host.fill(fmi2GetContinuousStates), [1.0, 0.0]);
+    }
+    for (position, rate) in [(1e-30, 0.0), (-1e-30, 1e30), (1e30, -1e30), (-1.0, 0.0)] {
+        assert_eq!(states(position, rate), OK);
+        for variable in &VARIABLES {
+            let (mut value, reference) = (0.0, reference(variable.name));
+            let status = unsafe { fmi2GetReal(host.component, &reference, 1, &mut value) };
+            assert!(
+                status != OK || !value.is_nan(),
+                "{} at {position}",
+                variable.name
+            );
+        }
+    }
+}

@@ -1,5 +1,6 @@
 """Independent hosts run the packed FMU and get what FMPy gets, bit for bit."""
 
+import importlib.util
 import math
 import subprocess
 import sys
@@ -24,6 +25,8 @@ def rows(host: str, fmu: Path) -> list[list[float]]:
 
 @pytest.mark.parametrize("host", [host for host in run_in_host.HOSTS if host != "fmpy"])
 def test_another_host_gets_the_same_motion(host, fmu):
+    if host != "fmi" and importlib.util.find_spec(host) is None:
+        pytest.skip(f"{host} is missing: it has no package for this platform (tests/hosts/requirements.txt)")
     expected, got = rows("fmpy", fmu), rows(host, fmu)
     assert len(got) == len(expected) == run_in_host.STEPS + 1
     # One reads only after the first step.
