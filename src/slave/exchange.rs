@@ -19,9 +19,6 @@ pub const STATE_COUNT: usize = STATES.len();
 /// Number of event indicators: λ − λ_min and λ_max − λ.
 pub const INDICATOR_COUNT: usize = 2;
 
-/// Up to this magnitude of stretch and rate, and of 1/stretch, every result is a number.
-const LARGEST: f64 = 1e30;
-
 /// A host finds the crossing of a limit to a tolerance, from either side of it:
 /// closer than this part of the limit it has been reached.
 const REACHED: f64 = 1e-9;
@@ -58,7 +55,9 @@ impl Exchange {
     pub(super) fn is_sound(&self) -> bool {
         let State { position, rate } = self.state;
         let collapsed = self.collapse.map_or(0.0, |collapse| collapse.time.value());
-        can_be_followed(position, rate) && self.time.value().is_finite() && collapsed.is_finite()
+        [self.time.value(), position, rate, collapsed]
+            .into_iter()
+            .all(f64::is_finite)
     }
 
     /// The limit that lies less than `tolerance`, relative to it, before the
@@ -75,12 +74,6 @@ impl Exchange {
             None
         }
     }
-}
-
-/// A host's integrator may try states beyond the limits of the stretch, even a
-/// negative one, but none where the powers of the stretch overflow.
-fn can_be_followed(position: f64, rate: f64) -> bool {
-    (LARGEST.recip()..=LARGEST).contains(&position.abs()) && rate.abs() <= LARGEST
 }
 
 impl Instance {
@@ -172,17 +165,14 @@ impl Instance {
     /// Sets stretch and stretch rate.
     ///
     /// # Errors
-    /// Error for another count than [`STATE_COUNT`] or a state where the equation
-    /// of motion leaves the range of the numbers.
+    /// Error for another count than [`STATE_COUNT`] or a number that is not finite.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
         let &[position, rate] = states else {
             return Err(wrong_count("continuous states", states.len(), STATE_COUNT));
         };
-        if !can_be_followed(position, rate) {
+        if let Some(bad) = states.iter().find(|state| !state.is_finite()) {
             return Err(Fault::error(format!(
-                "the continuous state ({position}, {rate}) is not one: the stretch must lie between \
-                 {} and {LARGEST} in magnitude, its rate below {LARGEST}; use a smaller step",
-                LARGEST.recip()
+                "the continuous state {bad} is not a finite number"
             )));
         }
         self.exchange()?.state = State { position, rate };

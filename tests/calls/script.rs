@@ -190,7 +190,9 @@ impl Stage {
                 let numbers = filled(references.len(), |to| unsafe {
                     fmi2GetReal(c, references.as_ptr(), references.len(), to)
                 })?;
-                let number = self.damaged || numbers.1.iter().all(|value| !value.is_nan());
+                let number = self.damaged
+                    || numbers.0 != OK
+                    || numbers.1.iter().all(|value| !value.is_nan());
                 demand(number, "a value is no number")?;
                 numbers.0
             }
@@ -340,8 +342,8 @@ fn demand(holds: bool, fault: &str) -> Result<(), String> {
     if holds { Ok(()) } else { Err(fault.to_owned()) }
 }
 
-/// The status of a function that fills an array, and the array; if the function
-/// failed it has left the array as it was.
+/// The status of a function that fills an array, and the array, which an error
+/// leaves as it was.
 fn filled(
     count: usize,
     function: impl FnOnce(*mut f64) -> fmi2Status,
@@ -349,7 +351,7 @@ fn filled(
     let mut values = vec![UNTOUCHED; count];
     let status = function(values.as_mut_ptr());
     let touched = values.iter().any(|&value| value != UNTOUCHED);
-    demand(status == OK || !touched, "an error wrote into the array")?;
+    demand(status != ERROR || !touched, "an error wrote into the array")?;
     Ok((status, values))
 }
 
