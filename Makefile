@@ -8,6 +8,7 @@ INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
 EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
+HOSTS_INSTALLED := $(VENV)/installed-hosts
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -17,11 +18,18 @@ ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
 ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG,$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
 
+# What makes libFuzzer see where a run leads, on stable Rust.
+FUZZ_FLAGS = --cfg fuzzing -Cpasses=sancov-module $(foreach option,level=4 inline-8bit-counters \
+pc-table trace-compares,-Cllvm-args=-sanitizer-coverage-$(option))
+FUZZ_TARGETS = calls state description
+FUZZ_SECONDS ?= 60
+HOST_TRIPLE = $(shell rustc -vV | sed -n 's/^host: //p')
+
 heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all guide paper examples test test-platforms stress bench env clean
+.PHONY: help run fmu fmu-all guide paper examples test test-platforms stress soak fuzz bench env clean
 
 help:
 	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
@@ -30,6 +38,8 @@ help:
 	@echo 'make examples  run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test   run every test'
 	@echo 'make stress run the long form of the stress tests (some minutes)'
+	@echo 'make soak   run the long form of the tests of robustness, and fuzz (some minutes)'
+	@echo 'make fuzz   fuzz each target for FUZZ_SECONDS (60)'
 	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
 	@echo 'make fmu    build and pack the FMU only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
@@ -65,7 +75,7 @@ examples: fmu $(EXAMPLES_INSTALLED)
 	printf '\n==> examples/%s.py\n' $$example; \
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
-test: $(INSTALLED) $(EXAMPLES_INSTALLED)
+test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED)
 	$(call heading,Format)
 	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
 	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
@@ -79,6 +89,8 @@ test: $(INSTALLED) $(EXAMPLES_INSTALLED)
 	@$(CARGO) test --workspace
 	$(call heading,FMPy tests)
 	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
+	$(call heading,Other hosts and memory checkers)
+	@$(PYTHON_IN_VENV) -m pytest tests/hosts
 
 test-platforms: fmu-all
 	$(call heading,Tests of the platforms)
@@ -87,6 +99,27 @@ test-platforms: fmu-all
 stress: $(INSTALLED)
 	$(call heading,Stress tests)
 	@STRESS=long $(CARGO) test --test stress -- --show-output
+
+soak: fmu $(HOSTS_INSTALLED)
+	$(call heading,Random calls)
+	@SOAK=long $(CARGO) test --test calls random:: -- --show-output
+	$(call heading,Memory and races)
+	@SOAK=long $(PYTHON_IN_VENV) -m pytest -rA tests/hosts/test_soak.py
+	@$(MAKE) --no-print-directory fuzz
+
+# A new input that leads somewhere new goes to target/fuzz/corpus, one that fails to target/fuzz.
+fuzz: $(INSTALLED)
+	@command -v $(CXX) >/dev/null || \
+	{ echo 'error: libFuzzer needs a C++ compiler (Debian: apt install g++)'; exit 1; }
+	$(call heading,Fuzzer)
+	@RUSTFLAGS='$(FUZZ_FLAGS)' $(CARGO) build --release --locked --manifest-path fuzz/Cargo.toml \
+	--target $(HOST_TRIPLE) --target-dir target/fuzz
+	@for target in $(FUZZ_TARGETS); do \
+	printf '\n==> Fuzzing %s for $(FUZZ_SECONDS) s\n' $$target; \
+	mkdir -p target/fuzz/corpus/$$target && \
+	target/fuzz/$(HOST_TRIPLE)/release/$$target target/fuzz/corpus/$$target fuzz/corpus/$$target \
+	-max_total_time=$(FUZZ_SECONDS) -timeout=20 -verbosity=0 -print_final_stats=1 \
+	-artifact_prefix=target/fuzz/$$target- || exit 1; done
 
 bench: $(INSTALLED) $(BENCHMARK_INSTALLED)
 	$(call heading,Benchmark)
@@ -111,6 +144,11 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
+	@touch $@
+
+$(HOSTS_INSTALLED): tests/hosts/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of other hosts)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/hosts/requirements.txt
 	@touch $@
 
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)

@@ -156,3 +156,50 @@ pub fn guarded(
         Err(_) => component.give_up(function),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::abi::*;
+    use crate::slave::Interface;
+
+    /// A call that panics is answered with Fatal, and so is every call after it;
+    /// the instance can still be freed.
+    #[test]
+    fn a_panic_does_not_leave_the_library() {
+        let callbacks = fmi2CallbackFunctions {
+            logger: None,
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: std::ptr::null_mut(),
+        };
+        let instance = Instance::of(Interface::CoSimulation);
+        let host = Host::new(callbacks, c"actuator", true);
+        let component: fmi2Component = Box::into_raw(Box::new(Component { instance, host })).cast();
+        let status = guarded(
+            component,
+            "fmi2SetupExperiment",
+            Call::SetupExperiment,
+            |_| panic!("what the test asks for"),
+        );
+        assert_eq!(status, fmi2Status_fmi2Fatal);
+        let mut state = std::ptr::null_mut();
+        // SAFETY: a live component, and arrays as long as they are said to be.
+        unsafe {
+            for status in [
+                fmi2GetReal(component, &0, 1, &mut 0.0),
+                fmi2SetReal(component, &0, 1, &0.1),
+                fmi2EnterInitializationMode(component),
+                fmi2DoStep(component, 0.0, 0.1, 1),
+                fmi2GetFMUstate(component, &mut state),
+                fmi2Terminate(component),
+                fmi2Reset(component),
+            ] {
+                assert_eq!(status, fmi2Status_fmi2Fatal);
+            }
+            fmi2FreeInstance(component);
+        }
+        assert!(state.is_null());
+    }
+}

@@ -3,6 +3,7 @@
 use super::phase::Phase;
 use super::{Fault, Instance};
 use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variability, Variable};
+use crate::view::Quantities;
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -65,6 +66,8 @@ impl Instance {
     ///
     /// # Errors
     /// Error for an unknown reference or another type; then nothing is stored.
+    /// Discard where a result is no number, at a state that a host's integrator
+    /// tried far out or at 0.
     pub fn get(
         &self,
         wanted: Type,
@@ -75,14 +78,22 @@ impl Instance {
             typed(reference, wanted)?;
         }
         let view = self.view();
+        let mut all_numbers = true;
         for (place, &reference) in references.iter().enumerate() {
             let value = match VARIABLES[reference as usize].access {
                 Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
                 Access::Setting { get, .. } => get(view.scene),
             };
+            all_numbers &= !value.is_nan();
             store(place, value);
         }
-        Ok(())
+        if all_numbers {
+            return Ok(());
+        }
+        Err(Fault::discard(format!(
+            "a result is no number at the stretch {}; try a shorter step",
+            view.stretch()
+        )))
     }
 
     /// Sets the variables of type `wanted` with these value references.

@@ -223,3 +223,39 @@ fn bad_arguments_are_refused_and_change_nothing() {
         assert_eq!(fmi2NewDiscreteStates(c, null_mut()), ERROR);
     }
 }
+
+#[test]
+fn results_that_are_no_numbers_are_discarded() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    let states = [
+        (0.0, 0.0),
+        (1e-310, 0.0),
+        (-3.5e285, 0.0),
+        (1.0, 0.1),
+        (-1e-30, 1e30),
+        (1e30, -1e30),
+    ];
+    for (place, state) in states
+        .map(|(position, rate)| [position, rate])
+        .iter()
+        .enumerate()
+    {
+        assert_eq!(
+            unsafe { fmi2SetContinuousStates(host.component, state.as_ptr(), 2) },
+            OK
+        );
+        let mut discarded = 0;
+        for variable in &VARIABLES {
+            let (mut value, reference) = (0.0, reference(variable.name));
+            let status = unsafe { fmi2GetReal(host.component, &reference, 1, &mut value) };
+            assert_eq!(
+                status == DISCARD,
+                value.is_nan(),
+                "{} at {state:?}",
+                variable.name
+            );
+            discarded += usize::from(status == DISCARD);
+        }
+        assert_eq!(discarded > 0, place < 3, "{state:?}");
+    }
+}

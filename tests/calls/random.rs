@@ -1,97 +1,249 @@
-//! Random calls in random order, valid and hostile.
+//! Random scripts of calls, in and out of order, valid and hostile, each played
+//! in another process: a crash or a hang is a failing test with its script.
 
-use dielectric_elastomer_actuator::variables::{Access, Kind, VARIABLES};
+use std::cell::RefCell;
+use std::io::{BufRead, BufReader, Read, Write, stdin, stdout};
+use std::process::{Child, ChildStdout, Command, Stdio};
+
 use proptest::prelude::*;
+use proptest::sample::select;
+use proptest::test_runner::{TestCaseError, TestRunner};
 
+use super::script::{Act, Script, play};
 use super::*;
 
-/// A random call with random arguments, valid and hostile.
-#[derive(Clone, Debug)]
-enum Random {
-    Row(usize),
-    SetReal(u32, f64),
-    GetReal(u32),
-    Step(f64, f64),
-}
+/// Set in the process that plays: the name of the test below that does it.
+const PLAYER: &str = "random::plays_for_the_tests";
+const ROLE: &str = "DEA_TEST_ROLE";
 
-fn hostile() -> impl Strategy<Value = f64> {
+/// Seconds after which a script hangs.
+const PATIENCE: u32 = 20;
+const ANSWER: &str = "played: ";
+
+fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
-        4 => -2.0..2.0_f64,
+        6 => -2.0..2.0_f64,
+        2 => 0.0..0.5_f64,
         1 => prop::num::f64::ANY,
-        1 => prop::sample::select(vec![0.0, -0.0, 1e-310, 1e3, -1e3, 1e6, f64::MAX, f64::NAN]),
+        1 => select(vec![0.0, -0.0, 1e-310, 1e3, -1e3, 1e6, f64::MAX, f64::NAN, f64::INFINITY]),
     ]
 }
 
-fn random_call() -> impl Strategy<Value = Random> {
-    let reference = 0..VARIABLES.len() as u32 + 3;
+fn whole() -> impl Strategy<Value = i32> {
+    prop_oneof![4 => -1..4, 1 => any::<i32>()]
+}
+
+fn reference() -> impl Strategy<Value = u32> {
+    prop_oneof![12 => 0..VARIABLES.len() as u32, 1 => any::<u32>()]
+}
+
+fn some<T: std::fmt::Debug>(item: impl Strategy<Value = T>) -> impl Strategy<Value = Vec<T>> {
+    prop::collection::vec(item, 0..4)
+}
+
+/// The calls that lead on in the standard's order, more often than chance would.
+fn leading_on() -> impl Strategy<Value = Act> {
+    let step = prop_oneof![6 => 0.001..3.0_f64, 1 => number()];
+    let at = prop_oneof![9 => Just(None), 1 => number().prop_map(Some)];
     prop_oneof![
-        2 => (0..TABLE.len()).prop_map(Random::Row),
-        4 => (reference.clone(), hostile()).prop_map(|(r, v)| Random::SetReal(r, v)),
-        2 => reference.prop_map(Random::GetReal),
-        4 => (Just(f64::NAN), hostile()).prop_map(|(t, h)| Random::Step(t, h)),
+        2 => Just(Act::EnterInitialization),
+        3 => Just(Act::ExitInitialization),
+        2 => Just(Act::EnterContinuous),
+        1 => Just(Act::EnterEvent),
+        1 => Just(Act::NewDiscreteStates),
+        6 => (at, step, any::<bool>()).prop_map(|(at, step, back)| Act::Step(at, step, back)),
+        3 => number().prop_map(Act::SetTime),
+        3 => prop::collection::vec(number(), 2).prop_map(Act::SetStates),
     ]
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+fn values() -> impl Strategy<Value = Act> {
+    let orders = || prop_oneof![6 => 1..5, 1 => any::<i32>()];
+    prop_oneof![
+        4 => some(reference()).prop_map(Act::GetReal),
+        6 => some((reference(), number())).prop_map(Act::SetReal),
+        1 => (any::<bool>(), some(reference())).prop_map(|(b, r)| Act::GetWhole(b, r)),
+        2 => (any::<bool>(), some((reference(), whole()))).prop_map(|(b, v)| Act::SetWhole(b, v)),
+        1 => some(reference()).prop_map(Act::Strings),
+        3 => some((0..3_u32, orders(), number())).prop_map(Act::SetInputDerivatives),
+        2 => some((reference(), orders())).prop_map(Act::GetOutputDerivatives),
+        2 => (some(reference()), some((reference(), number())))
+            .prop_map(|(unknown, known)| Act::GetDirectional(unknown, known)),
+    ]
+}
 
-    /// Whatever is called, the answer is a status, and what can be read is a
-    /// number; a refused setter leaves the value as it was.
-    #[test]
-    fn random_calls_are_answered(
-        (kind, phases) in prop::sample::select(KINDS.to_vec()),
-        phase in 0..5_usize,
-        calls in prop::collection::vec(random_call(), 1..30),
-    ) {
-        let host = Host::in_phase_of(kind, phases[phase]);
-        let c = host.component;
-        let mut time = 0.0;
-        for call in calls {
-            match call {
-                Random::Row(row) => {
-                    let status = (TABLE[row].1)(c);
-                    prop_assert!(status <= ERROR, "{} gave {status}", TABLE[row].0);
-                    if status == OK && TABLE[row].0 == "fmi2DoStep" {
-                        time += 0.1;
-                    }
-                    if status == OK && TABLE[row].0 == "fmi2Reset" {
-                        time = 0.0;
-                    }
-                }
-                Random::SetReal(reference, value) => {
-                    let (mut before, mut after) = (0.0, 0.0);
-                    let (read, set) = unsafe {(
-                        fmi2GetReal(c, &reference, 1, &mut before),
-                        fmi2SetReal(c, &reference, 1, &value),
-                    )};
-                    unsafe { fmi2GetReal(c, &reference, 1, &mut after) };
-                    if read == OK {
-                        prop_assert_eq!(after, if set == OK { value } else { before });
-                    }
-                    let row = VARIABLES.get(reference as usize);
-                    let settable = row.is_some_and(|row| {
-                        matches!(row.kind, Kind::Real { .. })
-                            && !matches!(row.access, Access::Result { .. })
-                            && row.check(value).is_ok()
-                    });
-                    prop_assert!(settable || set == ERROR);
-                }
-                Random::GetReal(reference) => {
-                    let mut value = 0.0;
-                    let status = unsafe { fmi2GetReal(c, &reference, 1, &mut value) };
-                    prop_assert!(status != OK || !value.is_nan(), "{reference} is {value}");
-                }
-                Random::Step(at, step) => {
-                    let at = if at.is_nan() { time } else { at };
-                    // A long step of a fast drive is work, not a fault.
-                    let step = step.clamp(-1.0, 10.0);
-                    let status = host.step(at, step);
-                    prop_assert!(status <= ERROR);
-                    if status == OK {
-                        time += step;
-                    }
-                }
-            }
-        }
+fn states() -> impl Strategy<Value = Act> {
+    let slot = 0..script::SLOTS;
+    let length = prop_oneof![3 => Just(None), 1 => any::<u16>().prop_map(Some)];
+    let changes = some((any::<u16>(), any::<u8>()));
+    prop_oneof![
+        3 => slot.clone().prop_map(Act::Save),
+        3 => slot.clone().prop_map(Act::Restore),
+        1 => slot.clone().prop_map(Act::Free),
+        2 => (slot.clone(), slot, changes, length, any::<bool>())
+            .prop_map(|(from, to, changes, length, sealed)| {
+                Act::Damage(from, to, changes, length, sealed)
+            }),
+    ]
+}
+
+fn others() -> impl Strategy<Value = Act> {
+    let option = || prop::option::of(number());
+    let count = || prop_oneof![4 => Just(2_u8), 1 => 0..5_u8];
+    prop_oneof![
+        Just(Act::Renew),
+        (any::<bool>(), some(0..5_u8)).prop_map(|(on, names)| Act::SetLogging(on, names)),
+        (option(), number(), option())
+            .prop_map(|(tolerance, start, stop)| { Act::SetupExperiment(tolerance, start, stop) }),
+        Just(Act::Terminate),
+        Just(Act::Reset),
+        Just(Act::Cancel),
+        (any::<u8>(), whole()).prop_map(|(function, kind)| Act::GetStatus(function, kind)),
+        any::<bool>().prop_map(Act::CompletedStep),
+        count().prop_map(Act::GetDerivatives),
+        count().prop_map(Act::GetIndicators),
+        count().prop_map(Act::GetStates),
+        count().prop_map(Act::GetNominals),
+        any::<u8>().prop_map(Act::Null),
+    ]
+}
+
+fn scripts() -> impl Strategy<Value = Script> {
+    let act = prop_oneof![4 => leading_on(), 4 => values(), 2 => states(), 2 => others()];
+    prop::collection::vec((prop::bool::weighted(0.3), act), 1..60)
+}
+
+/// Another process that plays scripts.
+struct Player {
+    process: Child,
+    answers: BufReader<ChildStdout>,
+}
+
+impl Player {
+    fn new() -> Player {
+        let mut process = Command::new(std::env::current_exe().expect("a running test"))
+            .args([PLAYER, "--exact", "--nocapture", "--test-threads=1"])
+            .env(ROLE, PLAYER)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the test starts again");
+        let answers = BufReader::new(process.stdout.take().expect("piped"));
+        Player { process, answers }
     }
+
+    /// Has a script played.
+    fn play(&mut self, script: &Script) -> Result<(), String> {
+        let bytes = postcard::to_stdvec(script).expect("plain data");
+        let input = self.process.stdin.as_mut().expect("piped");
+        let length = (bytes.len() as u32).to_le_bytes();
+        let sent = input.write_all(&[&length, bytes.as_slice()].concat());
+        let mut line = String::new();
+        while sent.is_ok()
+            && self
+                .answers
+                .read_line(&mut line)
+                .is_ok_and(|count| count > 0)
+        {
+            if let Some((_, answer)) = line.split_once(ANSWER) {
+                let answer = answer.trim_end();
+                return if answer == "well" {
+                    Ok(())
+                } else {
+                    Err(answer.to_owned())
+                };
+            }
+            line.clear();
+        }
+        let end = self.process.wait().expect("a process of ours");
+        *self = Player::new();
+        Err(format!("the process ended: {end}"))
+    }
+}
+
+impl Drop for Player {
+    fn drop(&mut self) {
+        // Without input it ends by itself.
+        self.process.stdin = None;
+        self.process.wait().ok();
+    }
+}
+
+/// The other process; by itself no test, so that it passes where it has no role.
+#[test]
+fn plays_for_the_tests() {
+    if std::env::var(ROLE).is_err() {
+        return;
+    }
+    let (mut input, mut length) = (stdin().lock(), [0; 4]);
+    while input.read_exact(&mut length).is_ok() {
+        let mut bytes = vec![0; u32::from_le_bytes(length) as usize];
+        input.read_exact(&mut bytes).expect("a whole script");
+        let script: Script = postcard::from_bytes(&bytes).expect("a script");
+        // A script that hangs ends the process.
+        unsafe { libc::alarm(PATIENCE) };
+        let answer = play(&script).err().unwrap_or_else(|| "well".into());
+        writeln!(stdout(), "\n{ANSWER}{}", answer.replace('\n', " ")).expect("a listener");
+    }
+}
+
+/// Whatever is called, the answer is as it has to be (see `Act` and `play`).
+/// `SOAK=long` plays fifty times as many scripts.
+#[test]
+fn random_calls_are_answered() {
+    let long = std::env::var("SOAK").is_ok_and(|form| form == "long");
+    let config = ProptestConfig {
+        cases: if long { 50_000 } else { 1_000 },
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let (player, calls) = (RefCell::new(Player::new()), RefCell::new(0));
+    let outcome = TestRunner::new(config).run(&scripts(), |script| {
+        *calls.borrow_mut() += script.len();
+        let played = player.borrow_mut().play(&script);
+        played.map_err(|fault| {
+            // For the fuzzer's corpus.
+            let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/failing-script");
+            std::fs::write(file, fuzzed(&script)).ok();
+            TestCaseError::fail(format!("{fault} (script in {file})"))
+        })
+    });
+    println!("{} calls", calls.borrow());
+    outcome.unwrap_or_else(|fault| panic!("{fault}"));
+}
+
+/// A script as the fuzzer's target takes it: acts one after the other.
+fn fuzzed(script: &Script) -> Vec<u8> {
+    let bytes = script
+        .iter()
+        .map(|act| postcard::to_stdvec(act).expect("plain data"));
+    bytes.flatten().collect()
+}
+
+#[test]
+fn the_end_of_the_process_is_noticed() {
+    let mut player = Player::new();
+    assert_eq!(player.play(&vec![(false, Act::Reset)]), Ok(()));
+    player.process.kill().expect("a process of ours");
+    let fault = player
+        .play(&vec![(false, Act::Reset)])
+        .expect_err("no process");
+    assert!(fault.contains("signal: 9"), "{fault}");
+    assert_eq!(player.play(&vec![(true, Act::Reset)]), Ok(()));
+}
+
+/// Scripts of the fuzzer's corpus, which once led somewhere new.
+#[test]
+fn the_corpus_of_the_fuzzer_is_answered() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/calls");
+    let mut player = Player::new();
+    let mut count = 0;
+    for file in std::fs::read_dir(folder).expect("a folder") {
+        let file = file.expect("a file").path();
+        let bytes = std::fs::read(&file).expect("readable");
+        let script = script::from_fuzzed(&bytes);
+        assert_eq!(player.play(&script), Ok(()), "{}", file.display());
+        count += usize::from(!script.is_empty());
+    }
+    assert!(count > 20, "{count} scripts");
 }

@@ -1,0 +1,77 @@
+//! Variables with any texts and numbers: what the writer of `modelDescription.xml` writes, the
+//! reader of the crate `fmi`, which knows nothing of it, reads back.
+#![no_main]
+#![allow(dead_code)]
+
+#[path = "../../src/description/schema.rs"]
+mod schema;
+
+use fmi::fmi2::schema::{ScalarVariable as Read, ScalarVariableElement};
+use schema::{Number, Real, ScalarVariable};
+use serde::Serialize;
+
+libfuzzer_sys::fuzz_target!(
+    |input: (f64, f64, Option<u32>, Option<bool>, u32, &str, &str)| {
+        let (start, min, derivative, reinit, value_reference, name, description) = input;
+        let texts = [name, description].map(legal);
+        // The writer takes texts of the table only, which live for ever.
+        let [name, description]: [&'static str; 2] = texts
+            .each_ref()
+            .map(|text| unsafe { &*(text.as_str() as *const str) });
+        let variable = ScalarVariable {
+            name,
+            value_reference,
+            description,
+            causality: "local",
+            variability: "continuous",
+            initial: Some("calculated"),
+            real: Some(Real {
+                unit: name,
+                display_unit: Some(description),
+                min: Number(min),
+                max: Number(-min),
+                nominal: Number(start),
+                start: Some(Number(start)),
+                derivative,
+                reinit,
+            }),
+            boolean: None,
+            enumeration: None,
+        };
+        let mut text = String::new();
+        let mut serializer = quick_xml::se::Serializer::new(&mut text);
+        serializer.indent(' ', 2);
+        variable
+            .serialize(serializer)
+            .expect("everything can be written");
+
+        let read: Read =
+            fmi::schema::deserialize(&text).unwrap_or_else(|fault| panic!("{fault}: {text}"));
+        assert_eq!(
+            (read.name.as_str(), read.description.as_deref()),
+            (name, Some(description)),
+            "{text}"
+        );
+        assert_eq!(read.value_reference, value_reference);
+        let ScalarVariableElement::Real(real) = read.elem else {
+            panic!("no Real: {text}");
+        };
+        let read = real.start.unwrap_or_default();
+        assert!(
+            read.to_bits() == start.to_bits() || read.is_nan() && start.is_nan(),
+            "{text}"
+        );
+        assert_eq!(
+            (real.derivative, real.reinit),
+            (derivative, reinit),
+            "{text}"
+        );
+    }
+);
+
+/// Without what XML cannot hold or may replace by a blank.
+fn legal(text: &str) -> String {
+    text.chars()
+        .filter(|&c| c >= ' ' && !('\u{fffe}'..='\u{ffff}').contains(&c))
+        .collect()
+}

@@ -1,0 +1,181 @@
+"""The motion of one scene as another host computes it: ``run_in_host.py HOST FMU`` prints a row for each
+communication point: λ and λ3. A process of its own for each host: one that crashes
+takes nothing with it. The communication step is a power of two, so that every host means the same times."""
+
+import ctypes
+import json
+import math
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+START_VALUES = {"phi": 0.5625, "S": 0.125, "gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2, "phi_ac": 0.1, "omega_ac": 0.4}
+STEP = 0.125
+STEPS = 240
+SWITCH = 120
+"""Number of steps after which `phi` is set anew, by hosts that can."""
+PHI_THEN = 0.25
+OUTPUTS = ("lambda", "lambda3")
+MODEL = "DielectricElastomerActuator"
+
+Rows = list[list[float]]
+
+
+def description(fmu: str | Path):
+    import fmpy
+
+    read = fmpy.read_model_description(str(fmu))
+    return read, {variable.name: variable.valueReference for variable in read.modelVariables}
+
+
+def with_fmpy(fmu: str | Path, start_values=START_VALUES) -> Rows:
+    """The instance API of FMPy, against which the others are held."""
+    import fmpy
+    from fmpy.fmi2 import FMU2Slave
+
+    read, reference = description(fmu)
+    slave = FMU2Slave(
+        guid=read.guid,
+        modelIdentifier=read.coSimulation.modelIdentifier,
+        unzipDirectory=fmpy.extract(str(fmu)),
+        instanceName="actuator",
+    )
+    slave.instantiate()
+    slave.setupExperiment(startTime=0.0)
+    slave.enterInitializationMode()
+    slave.setReal([reference[name] for name in start_values], list(start_values.values()))
+    slave.exitInitializationMode()
+    outputs = [reference[name] for name in OUTPUTS]
+    rows = [slave.getReal(outputs)]
+    for step in range(STEPS):
+        if step == SWITCH:
+            slave.setReal([reference["phi"]], [PHI_THEN])
+        slave.doStep(step * STEP, STEP)
+        rows.append(slave.getReal(outputs))
+    slave.terminate()
+    slave.freeInstance()
+    return rows
+
+
+def with_fmuloader(fmu: str) -> Rows:
+    from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
+
+    read, reference = description(fmu)
+    slave = Fmi2Slave(fmu, model_identifier=MODEL)
+    slave.instantiate("actuator", Fmi2Type.CO_SIMULATION, guid=read.guid)
+    slave.setup_experiment(start_time=0.0)
+    slave.enter_initialization_mode()
+    slave.set_real([reference[name] for name in START_VALUES], list(START_VALUES.values()))
+    slave.exit_initialization_mode()
+    outputs = [reference[name] for name in OUTPUTS]
+    rows = [slave.get_real(outputs)]
+    for step in range(STEPS):
+        if step == SWITCH:
+            slave.set_real([reference["phi"]], [PHI_THEN])
+        slave.do_step(step * STEP, STEP)
+        rows.append(slave.get_real(outputs))
+    slave.terminate()
+    slave.free_instance()
+    return rows
+
+
+def with_ecospy(fmu: str) -> Rows:
+    # It needs this library and does not bring it; the package `tbb` does.
+    ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libtbb.so.12"), ctypes.RTLD_GLOBAL)
+    from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
+
+    EcosLib.set_log_level("warn")
+    with EcosSimulationStructure() as structure:
+        structure.add_model("actuator", Path(fmu))
+        structure.add_parameter_set("scene", {f"actuator::{name}": value for name, value in START_VALUES.items()})
+        with EcosSimulation(STEP, structure=structure) as simulation:
+            simulation.init(0, "scene")
+            names = [f"actuator::{name}" for name in OUTPUTS]
+            rows = [[simulation.get_real(name) for name in names]]
+            for step in range(STEPS):
+                if step == SWITCH:
+                    simulation.set_real("actuator::phi", PHI_THEN)
+                simulation.step()
+                rows.append([simulation.get_real(name) for name in names])
+            simulation.terminate()
+    return rows
+
+
+def with_libcosimpy(fmu: str) -> Rows:
+    from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimManipulator import CosimManipulator
+    from libcosimpy.CosimObserver import CosimObserver
+    from libcosimpy.CosimSlave import CosimLocalSlave
+
+    _, reference = description(fmu)
+    execution = CosimExecution.from_step_size(int(STEP * 1e9))
+    slave = execution.add_local_slave(CosimLocalSlave(fmu, "actuator"))
+    for name, value in START_VALUES.items():
+        execution.real_initial_value(slave, reference[name], value)
+    observer = CosimObserver.create_last_value()
+    manipulator = CosimManipulator.create_override()
+    execution.add_observer(observer)
+    execution.add_manipulator(manipulator)
+    outputs = [reference[name] for name in OUTPUTS]
+    rows = []
+    for step in range(STEPS):
+        if step == SWITCH:
+            manipulator.slave_real_values(slave, [reference["phi"]], [PHI_THEN])
+        execution.step()
+        rows.append(observer.last_real_values(slave, outputs))
+    # It reads for the first time after the first step.
+    return [[math.nan] * len(outputs), *rows]
+
+
+def with_fmu_manipulation_toolbox(fmu: str) -> Rows:
+    """The actuator in a container, which is an FMU of its own, run by FMPy."""
+    with tempfile.TemporaryDirectory() as folder:
+        name = Path(fmu).name
+        (Path(folder) / name).symlink_to(fmu)
+        assembly = {
+            "name": "container.fmu",
+            "step_size": STEP,
+            "auto_link": False,
+            "fmu": [name],
+            "input": [["phi", name, "phi"], ["S", name, "S"]],
+            "output": [[name, output, output] for output in OUTPUTS],
+            "start": [[name, variable, value] for variable, value in START_VALUES.items()],
+        }
+        (Path(folder) / "container.json").write_text(json.dumps(assembly))
+        command = [sys.executable, "-m", "fmu_manipulation_toolbox.cli.fmucontainer"]
+        made = subprocess.run(
+            [*command, "-container", "container.json", "-fmu-directory", folder],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        container = Path(folder) / "container.fmu"
+        if not container.exists():
+            raise RuntimeError(made.stdout + made.stderr)
+        return with_fmpy(container, {name: START_VALUES[name] for name in ("phi", "S")})
+
+
+def with_fmi(fmu: str) -> Rows:
+    """The crate `fmi`, in the program that `cargo test` and ``cargo build --example run_with_fmi`` build."""
+    program = Path(__file__).resolve().parents[2] / "target/debug/examples/run_with_fmi"
+    scene = [f"{name}={value!r}" for name, value in START_VALUES.items()]
+    settings = [STEP, STEPS, SWITCH, PHI_THEN, ",".join(OUTPUTS)]
+    run = subprocess.run([program, fmu, *map(str, settings), *scene], capture_output=True, text=True, check=True)
+    return [[float(number) for number in line.split()[1:]] for line in run.stdout.splitlines()]
+
+
+HOSTS = {
+    "fmpy": with_fmpy,
+    "fmi": with_fmi,
+    "fmuloader": with_fmuloader,
+    "ecospy": with_ecospy,
+    "libcosimpy": with_libcosimpy,
+    "fmu_manipulation_toolbox": with_fmu_manipulation_toolbox,
+}
+
+if __name__ == "__main__":
+    host, fmu = sys.argv[1:]
+    for row in HOSTS[host](fmu):
+        print("row", *map(float, row))
