@@ -193,6 +193,8 @@ impl Instance {
             stop_time,
             tolerance: kept,
         };
+        // Derivatives of inputs that are set before count from the start time.
+        self.scene.drive.since = Double::new(start_time);
         Ok((kept != wanted).then(|| Event {
             warning: true,
             text: format!(

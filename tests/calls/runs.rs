@@ -105,3 +105,23 @@ fn input_derivatives_are_followed_inside_a_step() {
         "{coarse} and {fine}"
     );
 }
+
+/// A host may set derivatives of inputs before it says when the simulation
+/// starts; an input that is then set has the value that was set.
+#[test]
+fn input_derivatives_set_early_count_from_the_start_time() {
+    let host = Host::new();
+    let c = host.component;
+    let phi = reference("phi");
+    unsafe {
+        assert_eq!(fmi2SetRealInputDerivatives(c, &phi, 1, &1, &1.92), OK);
+        assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 1.343, 0, 0.0), OK);
+        assert_eq!(fmi2EnterInitializationMode(c), OK);
+        assert_eq!(fmi2SetReal(c, &phi, 1, &0.25), OK);
+        assert_eq!(host.get("phi"), 0.25);
+        assert_eq!(fmi2ExitInitializationMode(c), OK);
+        assert_eq!(host.get("phi"), 0.25);
+        assert_eq!(fmi2DoStep(c, 1.343, 0.125, 1), OK);
+    }
+    assert!((host.get("phi") - (0.25 + 0.125 * 1.92)).abs() < 1e-15);
+}
