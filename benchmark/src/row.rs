@@ -22,14 +22,19 @@ impl Row<'_> {
         let text = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.4e}"));
         println!(
             "{},{:e},{},{},{},{},{},{}",
-            self.method,
+            plain(self.method),
             self.tolerance,
             self.step.map_or(String::new(), |v| format!("{v}")),
-            self.inputs,
+            plain(self.inputs),
             text(self.nanoseconds),
             text(self.error),
             text(self.hold_error),
-            self.note.replace([',', '\n'], ";"),
+            plain(&self.note),
         );
     }
+}
+
+/// A text that fits into a cell.
+fn plain(text: &str) -> String {
+    text.replace([',', '\n'], ";")
 }

@@ -117,13 +117,13 @@ fn integration<'a>(case: &'a Case, motion: &'a Motion) -> Vec<Skip<'a>> {
     };
     vec![
         skip(
-            "surface effects, folded into three coefficients",
+            "surface effects folded into three coefficients",
             1e-9,
             Box::new(move || follow(integrated(1e-9), motion, TIME, 100.0)),
             Box::new(move || follow(integrated(1e-9), &unfolded, TIME, 100.0)),
         ),
         skip(
-            "terms that are zero (in a formula of its own; not done)",
+            "terms that are zero (a formula of its own; not done)",
             1e-9,
             Box::new(move || follow(integrated(1e-9), &Ideal(ideal), TIME, 100.0)),
             Box::new(move || follow(integrated(1e-9), &ideal, TIME, 100.0)),
@@ -135,7 +135,7 @@ fn integration<'a>(case: &'a Case, motion: &'a Motion) -> Vec<Skip<'a>> {
             Box::new(move || follow(integrated(1e-9), &vanishing, TIME, 100.0)),
         ),
         skip(
-            "constant inputs: an orbit is run again, not integrated",
+            "constant inputs: an orbit is run again for integrated",
             1e-9,
             Box::new(move || follow(ours::start(1e-9), &constant, TIME, 10.0)),
             Box::new(move || follow(integrated(1e-9), &constant, TIME, 10.0)),
@@ -249,7 +249,7 @@ fn lanes<'a>(case: &Case) -> Skip<'a> {
         Err(_) => f64::NAN,
     };
     Skip {
-        name: "scenes over 2000 units of time, in lanes, not one by one",
+        name: "scenes over 2000 units of time: in lanes for one by one",
         tolerance: 1e-9,
         units: SCENES as f64,
         skipped: Box::new(move || sweep::follow(&scenes, TIME, 1e-9).iter().map(highest).sum()),
