@@ -1,8 +1,12 @@
 //! Many scenes at once against the same scenes one by one.
 
+use dielectric_elastomer_actuator::actuator::Fleet;
 use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::solver::batch::{self, Motion};
+use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
+use fearless_simd::Level;
 use proptest::prelude::*;
 
 fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Scene {
@@ -67,6 +71,21 @@ fn scenes_of_all_kinds_come_out_in_their_order() {
     assert_eq!(limit, Limit::Upper, "{:?}", outcomes[4]);
     // From two integrators; the way there multiplies every rounding.
     assert!((time - 1_251.031_377).abs() < 1e-4, "{time}");
+}
+
+/// Whose iteration never moves by more than rounding: its strides grow all the same.
+#[test]
+fn a_motion_next_to_rest_is_not_given_back() {
+    let scene = alternating([0.0; 3], 1e-160, 0.1438);
+    let motion = Motion {
+        equation: scene.motion(),
+        start: scene.start,
+        limits: scene.limits,
+    };
+    let span = [Double::ZERO, Double::new(5000.0)];
+    let arrivals = batch::follow(Level::new(), &mut Fleet::new(), &[motion], span, 1e-9);
+    let arrival = arrivals[0].expect("it shares lanes all the way");
+    assert_eq!(arrival.state, scene.start);
 }
 
 #[test]

@@ -23,7 +23,7 @@ use super::{LocalEquation, State};
 const MOST_SWEEPS: u32 = 40;
 
 /// Corrections below this many ulps of the position are rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.
@@ -48,8 +48,6 @@ pub struct Substep<const P: usize> {
     pub highest: f64,
     /// Smallest position at a node.
     pub lowest: f64,
-    /// Fixed-point sweeps that were needed.
-    pub sweeps: u32,
     /// By how much a sweep shrank the change of the one before.
     pub contraction: f64,
 }
@@ -80,6 +78,14 @@ impl<const P: usize> Substep<P> {
     #[must_use]
     pub fn nodes(&self) -> RangeInclusive<f64> {
         self.lowest..=self.highest
+    }
+
+    /// The range that holds the motion: between two nodes it may go a little
+    /// beyond both.
+    #[must_use]
+    pub fn reach(&self) -> RangeInclusive<f64> {
+        let beyond = 0.25 * (self.highest - self.lowest);
+        self.lowest - beyond..=self.highest + beyond
     }
 }
 
@@ -152,8 +158,7 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     let half = 0.5 * length;
     let square = half * half;
     let node = V::load(simd, &tables.node);
-    let splat = node;
-    let splat = |value: f64| splat.same(value);
+    let splat = |value: f64| node.same(value);
 
     let load_right = equation.load(node.mul_add(splat(half), splat(half)));
     let load_left = equation.load(splat(half) - node * splat(half));
@@ -246,7 +251,6 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
                     series,
                     highest,
                     lowest,
-                    sweeps,
                     contraction,
                 });
             }

@@ -32,18 +32,15 @@ impl Limits {
     }
 
     /// The limit that the motion first meets in the segment, and the offset
-    /// at which it does, to rounding. `nodes` is the range of positions at the
-    /// nodes of the segment.
+    /// at which it does, to rounding. `reach` is the range that holds the motion.
     #[must_use]
     pub fn first_contact(
         &self,
         segment: &mut Segment,
-        nodes: RangeInclusive<f64>,
+        reach: RangeInclusive<f64>,
     ) -> Option<(Limit, f64)> {
-        // Between two nodes the motion may go a little beyond both.
-        let beyond = 0.25 * (nodes.end() - nodes.start());
-        let upper = nodes.end() + beyond >= self.upper;
-        let lower = nodes.start() - beyond <= self.lower;
+        let upper = *reach.end() >= self.upper;
+        let lower = *reach.start() <= self.lower;
         if !upper && !lower {
             return None;
         }

@@ -19,7 +19,7 @@ pub const PAIRS: usize = 4;
 
 /// The end of a stride misses less than this part of the estimate below: 16 to
 /// 26 000 times less on an AC motion near resonance, 2000 times in the mean.
-pub const NEGLECTED: f64 = 1000.0;
+const NEGLECTED: f64 = 1000.0;
 
 /// A stride shorter than this part of what it was to be cannot go on.
 const SHORTEST: f64 = 1e-12;
@@ -145,9 +145,8 @@ impl Strides {
                 Err(end) => return end,
             };
             let (lowest, highest) = way.clear;
-            // Between two nodes the motion may go a little beyond both.
-            let beyond = 0.25 * (substep.highest - substep.lowest);
-            if !(substep.lowest - beyond > lowest && substep.highest + beyond < highest) {
+            let reach = substep.reach();
+            if !(*reach.start() > lowest && *reach.end() < highest) {
                 return End::Blocked;
             }
             let Series { half, even, odd } = substep.series;
@@ -204,7 +203,7 @@ impl Strides {
             let solved = solve::<S, f64x4<S>, L, PAIRS>(simd, &GAUSS_8, local, &task);
             let factor = match solved {
                 Ok(substep) => {
-                    let error = end_error(&substep) / NEGLECTED / scale;
+                    let error = end_error(&substep) / scale;
                     match control.judge_stride(error, substep.contraction) {
                         Verdict::Accept(factor) => return Ok((substep, factor)),
                         Verdict::Reject(factor) => factor,
@@ -267,5 +266,5 @@ pub fn end_error(substep: &Substep<PAIRS>) -> f64 {
     let size = even[0].abs() + odd[0].abs() + even[1].abs();
     let tail = substep.tail();
     // Nothing at all where f vanishes.
-    tail * tail / size.max(f64::MIN_POSITIVE)
+    tail * tail / size.max(f64::MIN_POSITIVE) / NEGLECTED
 }

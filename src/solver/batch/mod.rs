@@ -13,7 +13,7 @@ use crate::solver::lanes::Lanes;
 use crate::solver::limits::Limits;
 use crate::solver::number::Number;
 use crate::solver::step_control::{StepControl, Verdict};
-use crate::solver::stride::{self, NEGLECTED, PAIRS};
+use crate::solver::stride::{self, PAIRS};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// Motions that are followed at once.
@@ -204,10 +204,11 @@ impl<E: Equation> Course<'_, E> {
         let scale = lane.state.position.abs();
         let substep = round.substep(index);
         let ended = round.excess[index] <= 0.0 && substep.end.position.is_finite();
-        let error = stride::end_error(&substep) / NEGLECTED / scale;
-        let verdict = match ended {
-            true => self.control.judge_stride(error, substep.contraction),
-            false => Verdict::Reject(0.5),
+        let verdict = if ended {
+            let error = stride::end_error(&substep) / scale;
+            self.control.judge_stride(error, substep.contraction)
+        } else {
+            Verdict::Reject(0.5)
         };
         lane.strides += 1;
         let factor = match verdict {
@@ -222,8 +223,7 @@ impl<E: Equation> Course<'_, E> {
         let Motion {
             equation, limits, ..
         } = &self.motions[lane.motion];
-        let beyond = 0.25 * (substep.highest - substep.lowest);
-        let (low, high) = (substep.lowest - beyond, substep.highest + beyond);
+        let (low, high) = substep.reach().into_inner();
         if !(limits.lower < low && high < limits.upper) {
             return false;
         }

@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 
 use super::{Abreast, Fleet, LANES, Lane, Row};
 use crate::solver::State;
-use crate::solver::collocation::{self, Series, Substep};
+use crate::solver::collocation::{self, ROUNDING, Series, Substep};
 use crate::solver::double::Double;
 use crate::solver::lanes::Lanes;
 use crate::solver::step_control::StepControl;
@@ -13,9 +13,6 @@ use crate::solver::tables::GAUSS_8;
 
 /// Sweeps after which a lane that still moves takes a shorter stride.
 const MOST_SWEEPS: u32 = 12;
-
-/// Corrections below this many ulps of the position are rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A stride in each lane: what is asked for, and what came out.
 #[derive(Clone, Debug)]
@@ -122,7 +119,6 @@ impl Round {
             },
             highest: self.highest[index],
             lowest: self.lowest[index],
-            sweeps: 0,
             contraction: self.contraction[index],
         }
     }
@@ -209,7 +205,8 @@ impl Round {
                 let observed = if sweeps == 2 {
                     expected
                 } else {
-                    change / last_change.max(fill(f64::MIN_POSITIVE))
+                    // What is rounding shrinks no more.
+                    (change - rounding).max(zero) / last_change.max(fill(f64::MIN_POSITIVE))
                 };
                 contraction = contraction.max(observed);
                 // The error left is the change times the rate of convergence.
@@ -223,6 +220,15 @@ impl Round {
                     round.highest = highest.store();
                     round.lowest = lowest.store();
                     round.contraction = contraction.store();
+                    if sweeps == 2 {
+                        // A change that is nothing but rounding tells nothing of it.
+                        let (change, rounding) = (change.store(), rounding.store());
+                        for (index, contraction) in round.contraction.iter_mut().enumerate() {
+                            if change[index] <= rounding[index] {
+                                *contraction = 0.0;
+                            }
+                        }
+                    }
                     round.excess = excess.store();
                     for (k, [right, left]) in new.into_iter().enumerate() {
                         round.rates[PAIRS + k] = right.1.store();

@@ -120,7 +120,7 @@ impl Trajectory {
         let mut segment = Segment::new(state, substep.end, &substep.series);
         self.stop = self
             .limits
-            .first_contact(&mut segment, substep.nodes())
+            .first_contact(&mut segment, substep.reach())
             .map(|(limit, offset)| (limit, begin.plus(offset)));
         self.pieces.push(Piece { begin, segment });
         if autonomous && self.stop.is_none() {
