@@ -3,10 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::drive::{Harmonic, Polynomial};
+use crate::actuator::motion::LocalMotion;
 use crate::actuator::{Coefficients, Drive, Motion, Parameters};
-use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::limits::Limits;
+use crate::solver::{Equation, State};
 
 /// What the actuator does where the motion reaches a limit of the stretch.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,10 +64,26 @@ impl Scene {
 
     /// The motion that this scene describes.
     #[must_use]
+    #[inline(always)]
     pub fn motion(&self) -> Motion {
         Motion {
             coefficients: Coefficients::fold(&self.parameters),
             drive: self.drive,
         }
+    }
+}
+
+/// Its motion, made anew for each substep: a copy that is kept would have to be
+/// kept up to date.
+impl Equation for Scene {
+    type Local = LocalMotion;
+
+    #[inline(always)]
+    fn at(&self, time: Double) -> LocalMotion {
+        self.motion().at(time)
+    }
+
+    fn is_autonomous(&self) -> bool {
+        self.drive.is_constant()
     }
 }

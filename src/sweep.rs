@@ -86,7 +86,7 @@ pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome,
 pub fn follow_one(scene: &Scene, end: f64, tolerance: f64) -> Result<Outcome, Failure> {
     let trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, tolerance);
     let mut trajectory = trajectory.recording_extremes();
-    let collapse = match trajectory.advance(&scene.motion(), end)? {
+    let collapse = match trajectory.advance(scene, end)? {
         Progress::Whole => None,
         Progress::Stopped { limit, after } => Some((limit, after)),
     };

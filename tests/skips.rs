@@ -86,6 +86,11 @@ fn reading_everything_and_setting_nothing_new_leave_the_motion_alone() {
             }
         });
         assert_eq!(plain, set_again);
+        let held_again = states(settings, 1e-9, STEP, |instance| {
+            let set = instance.set_input_derivatives(&[reference("phi")], &[1], &[0.0]);
+            set.expect("inputs have derivatives");
+        });
+        assert_eq!(plain, held_again);
     }
 }
 

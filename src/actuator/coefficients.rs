@@ -28,6 +28,7 @@ pub struct Coefficients<N = f64> {
 impl<N: Number> Coefficients<N> {
     /// Folds the parameters.
     #[must_use]
+    #[inline(always)]
     pub fn fold(parameters: &Parameters<N>) -> Coefficients<N> {
         let Parameters {
             aspect,

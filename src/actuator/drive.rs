@@ -33,15 +33,17 @@ impl Polynomial {
         self.term[0] = value;
     }
 
+    /// The same with another value.
+    #[must_use]
+    pub fn with_value(mut self, value: f64) -> Polynomial {
+        self.set_value(value);
+        self
+    }
+
     /// The input with its derivative of `order` 1 to 4 replaced.
     pub fn set_derivative(&mut self, order: usize, value: f64) {
         let factorial: f64 = (1..=order).map(|k| k as f64).product();
         self.term[order] = value / factorial;
-    }
-
-    /// The input with all derivatives 0.
-    pub fn clear_derivatives(&mut self) {
-        self.term[1..].fill(0.0);
     }
 
     /// Whether it is a polynomial in finite numbers.
@@ -53,22 +55,23 @@ impl Polynomial {
     /// Whether the input keeps its value.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.term[1..].iter().all(|term| *term == 0.0)
+        // Without a branch for each; the shift drops the sign of −0.
+        let bits = |sum, term: &f64| sum | term.to_bits();
+        self.term[1..].iter().fold(0, bits) << 1 == 0
     }
 
-    /// The input seen from the moment `shift` later.
-    #[must_use]
-    pub fn shifted(&self, shift: f64) -> Polynomial {
-        let mut term = self.term;
-        if !self.is_constant() {
-            // Repeated synthetic division by (s − shift).
-            for low in 0..HIGHEST_DERIVATIVE {
-                for k in (low..HIGHEST_DERIVATIVE).rev() {
-                    term[k] += shift * term[k + 1];
-                }
+    /// Moves the moment from which its time counts by `shift`.
+    #[inline(always)]
+    pub fn shift(&mut self, shift: f64) {
+        if self.is_constant() {
+            return;
+        }
+        // Repeated synthetic division by (s − shift).
+        for low in 0..HIGHEST_DERIVATIVE {
+            for k in (low..HIGHEST_DERIVATIVE).rev() {
+                self.term[k] += shift * self.term[k + 1];
             }
         }
-        Polynomial { term }
     }
 
     /// The value at the moment in which the input was set.
@@ -178,11 +181,12 @@ impl Drive {
     }
 
     /// Counts the time of the inputs from `time` on.
+    #[inline(always)]
     pub fn rebase(&mut self, time: Double) {
         let shift = time.since(self.since);
         self.since = time;
-        self.voltage = self.voltage.shifted(shift);
-        self.prestress = self.prestress.shifted(shift);
+        self.voltage.shift(shift);
+        self.prestress.shift(shift);
     }
 
     /// Total voltage and prestress at `time` as they change in a direction,
@@ -201,18 +205,28 @@ impl Drive {
 
     /// The drive seen from `time`.
     #[must_use]
+    #[inline(always)]
     pub fn at(&self, time: Double) -> LocalDrive {
-        let shift = time.since(self.since);
-        let mut voltage = self.voltage.shifted(shift);
-        let prestress = self.prestress.shifted(shift);
+        let Drive {
+            since,
+            mut voltage,
+            mut prestress,
+            harmonic,
+        } = *self;
+        let constant = voltage.is_constant() && prestress.is_constant();
+        if !constant {
+            let shift = time.since(since);
+            voltage.shift(shift);
+            prestress.shift(shift);
+        }
         let Harmonic {
             amplitude,
             frequency,
             ..
-        } = self.harmonic;
+        } = harmonic;
         let mut angle = 0.0;
         if amplitude != 0.0 {
-            angle = self.harmonic.angle(time);
+            angle = harmonic.angle(time);
             if frequency == 0.0 {
                 voltage.set_value(voltage.value() + amplitude * angle.sin());
             }
@@ -220,6 +234,7 @@ impl Drive {
         LocalDrive {
             voltage,
             prestress,
+            constant,
             amplitude,
             angle,
             frequency: if amplitude == 0.0 { 0.0 } else { frequency },
@@ -232,6 +247,8 @@ impl Drive {
 pub struct LocalDrive {
     voltage: Polynomial,
     prestress: Polynomial,
+    /// Whether both keep their values.
+    constant: bool,
     amplitude: f64,
     /// ωt + ϑ at the origin, less whole turns.
     angle: f64,
@@ -243,7 +260,7 @@ impl LocalDrive {
     /// Total voltage φ + φ_a sin(ωt + ϑ) at `offset` after the origin.
     #[inline(always)]
     pub fn voltage<N: Number>(&self, offset: N) -> N {
-        let polynomial = if self.voltage.is_constant() {
+        let polynomial = if self.constant {
             offset.same(self.voltage.value())
         } else {
             self.voltage.at(offset)
@@ -258,7 +275,7 @@ impl LocalDrive {
     /// Prestress at `offset` after the origin.
     #[inline(always)]
     pub fn prestress<N: Number>(&self, offset: N) -> N {
-        if self.prestress.is_constant() {
+        if self.constant {
             return offset.same(self.prestress.value());
         }
         self.prestress.at(offset)
@@ -284,7 +301,8 @@ mod tests {
         let s: f64 = 0.4;
         let direct = 0.5 + 0.2 * s - 0.15 * s * s + 0.7 / 6.0 * s.powi(3) + 1.1 / 24.0 * s.powi(4);
         assert!((input.at(s) - direct).abs() < 1e-15);
-        assert!((input.shifted(0.3).at(0.1) - direct).abs() < 1e-15);
+        input.shift(0.3);
+        assert!((input.at(0.1) - direct).abs() < 1e-15);
     }
 
     #[test]

@@ -88,6 +88,7 @@ pub fn energy(coefficients: &Coefficients, load: Load<f64>, state: State) -> f64
 impl Equation for Motion {
     type Local = LocalMotion;
 
+    #[inline(always)]
     fn at(&self, time: Double) -> LocalMotion {
         LocalMotion {
             coefficients: self.coefficients,
@@ -132,8 +133,7 @@ impl LocalEquation for LocalMotion {
 
     /// 1/√|∂λ''/∂λ| with the terms of the stiffness added up by size, since
     /// their sum may vanish.
-    fn time_scale(&self, state: State) -> f64 {
-        let load = self.load(0.0);
+    fn time_scale(&self, load: Load<f64>, state: State) -> f64 {
         let square = state.position * state.position;
         let Coefficients {
             inertia,

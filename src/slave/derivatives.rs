@@ -3,7 +3,7 @@
 
 use super::phase::Phase;
 use super::{Fault, Instance, values};
-use crate::actuator::drive::HIGHEST_DERIVATIVE;
+use crate::actuator::drive::{HIGHEST_DERIVATIVE, Polynomial};
 use crate::scene::Scene;
 use crate::solver::State;
 use crate::variables::{Access, Causality, Derivatives, Kind, STATES, VARIABLES, Variable};
@@ -36,6 +36,7 @@ impl Instance {
             check_finite(name, value)?;
         }
         self.bring_drive_up_to_date();
+        let before = self.scene.drive;
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
             let Access::Input { of, .. } = VARIABLES[reference as usize].access else {
                 continue;
@@ -43,12 +44,14 @@ impl Instance {
             let input = of(&mut self.scene);
             let bit = 1 << reference;
             if self.fresh_derivatives & bit == 0 {
-                input.clear_derivatives();
+                *input = Polynomial::constant(input.value());
                 self.fresh_derivatives |= bit;
             }
             input.set_derivative(order as usize, value);
         }
-        self.changed();
+        if self.scene.drive != before {
+            self.changed();
+        }
         Ok(())
     }
 

@@ -4,7 +4,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Event, Fault};
-use crate::actuator::Motion;
 use crate::scene::{OnPullIn, Scene};
 use crate::solver::double::Double;
 use crate::solver::limits::Limit;
@@ -23,10 +22,9 @@ const STEP_ROUNDING: f64 = 1e-6;
 pub struct Run {
     /// Start time and all steps summed up.
     time: Double,
-    motion: Motion,
     trajectory: Trajectory,
     collapse: Option<Collapse>,
-    /// The scene has changed since `motion` was made of it.
+    /// The scene has changed since the trajectory has followed it.
     stale: bool,
 }
 
@@ -38,7 +36,6 @@ impl Run {
         }
         Run {
             time,
-            motion: scene.motion(),
             trajectory,
             collapse: None,
             stale: false,
@@ -46,22 +43,9 @@ impl Run {
     }
 
     /// Whether the numbers can be those of a motion that has followed the scene.
-    pub(super) fn is_sound(&self, scene: &Scene) -> bool {
+    pub(super) fn is_sound(&self) -> bool {
         let collapsed = self.collapse.map_or(0.0, |collapse| collapse.time.value());
-        // A motion that is stale is made anew before it is followed.
-        let follows = self.stale || {
-            let Motion {
-                coefficients,
-                drive,
-            } = self.motion;
-            coefficients == scene.motion().coefficients
-                && drive.harmonic == scene.drive.harmonic
-                && drive.is_finite()
-        };
-        follows
-            && self.trajectory.is_sound()
-            && self.time.value().is_finite()
-            && collapsed.is_finite()
+        self.trajectory.is_sound() && self.time.value().is_finite() && collapsed.is_finite()
     }
 
     /// The present time of the model.
@@ -125,11 +109,10 @@ impl Run {
             return Ok(None);
         }
         if self.stale {
-            self.motion = scene.motion();
             self.trajectory.restart(self.time);
             self.stale = false;
         }
-        match self.trajectory.advance(&self.motion, step) {
+        match self.trajectory.advance(scene, step) {
             Ok(Progress::Whole) => {
                 self.time = self.time.plus(step);
                 Ok(None)

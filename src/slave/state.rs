@@ -9,7 +9,7 @@ use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RAN
 use crate::variables::{Access, VARIABLES};
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 1;
+pub const LAYOUT: u16 = 2;
 
 impl Instance {
     /// The instance as bytes, in the memory of `buffer`.
@@ -89,7 +89,7 @@ impl Instance {
         }
         let sound = match &self.course {
             Course::Ahead => true,
-            Course::Run(run) => run.is_sound(&self.scene),
+            Course::Run(run) => run.is_sound(),
             Course::Exchange(exchange) => exchange.is_sound(),
         };
         if !sound {

@@ -2,6 +2,7 @@
 
 use super::phase::Phase;
 use super::{Fault, Instance};
+use crate::actuator::drive::Polynomial;
 use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variability, Variable};
 use crate::view::Quantities;
 
@@ -119,13 +120,17 @@ impl Instance {
             let changed = match VARIABLES[reference as usize].access {
                 Access::Input { of, .. } => {
                     let input = of(&mut self.scene);
-                    let before = *input;
-                    input.set_value(value);
                     // Derivatives belong to the value they were set with.
-                    if self.fresh_derivatives & (1 << reference) == 0 {
-                        input.clear_derivatives();
+                    let new = if self.fresh_derivatives & (1 << reference) == 0 {
+                        Polynomial::constant(value)
+                    } else {
+                        input.with_value(value)
+                    };
+                    let changed = new != *input;
+                    if changed {
+                        *input = new;
                     }
-                    *input != before
+                    changed
                 }
                 Access::Setting { get, set } => {
                     let before = get(&self.scene);

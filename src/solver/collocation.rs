@@ -22,7 +22,7 @@ use super::{LocalEquation, State};
 /// Sweeps after which an iteration that still moves is given up.
 const MOST_SWEEPS: u32 = 40;
 
-/// Corrections below this many ulps of the position are rounding.
+/// Corrections of a position by less than this part of it are rounding.
 pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// f over a substep: half² times its Legendre coefficients, where half is half
@@ -89,6 +89,24 @@ impl<const P: usize> Substep<P> {
     }
 }
 
+/// A first guess of f over a substep.
+#[derive(Clone, Copy, Debug)]
+pub enum Guess<'a, const P: usize> {
+    /// It goes on as in the substep before.
+    Before(&'a Series<P>),
+    /// It keeps this value, which it has at the begin.
+    Begin(f64),
+}
+
+/// How closely the stages are to be solved.
+#[derive(Clone, Copy, Debug)]
+pub struct Closeness {
+    /// The position may be this far from the solution.
+    pub settled: f64,
+    /// A sweep that changes the position by less tells nothing.
+    pub rounding: f64,
+}
+
 /// What a substep is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a, const P: usize> {
@@ -96,11 +114,10 @@ pub struct Task<'a, const P: usize> {
     pub start: State,
     /// Its length.
     pub length: f64,
-    /// The iteration ends where the position is this close to the solution of
-    /// the stages.
-    pub settled: f64,
-    /// The substep before, whose f is continued for a first guess.
-    pub before: Option<&'a Series<P>>,
+    /// When the iteration ends.
+    pub closeness: Closeness,
+    /// What f is taken for at first.
+    pub guess: Guess<'a, P>,
     /// The contraction that is expected; 1 where nothing is known.
     pub contraction: f64,
 }
@@ -152,7 +169,7 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     let &Task {
         start,
         length,
-        settled,
+        closeness: Closeness { settled, rounding },
         ..
     } = task;
     let half = 0.5 * length;
@@ -166,8 +183,9 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     let drift = node * splat(half * start.rate);
 
     let mut f;
-    match task.before {
-        Some(before) => {
+    let mut old = [splat(f64::NAN); 2];
+    match task.guess {
+        Guess::Before(before) => {
             let ratio = splat(half / before.half);
             let from = splat(1.0) + ratio;
             f = [
@@ -175,15 +193,25 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
                 continued(before, from - node * ratio),
             ];
         }
-        None => {
-            let rate = splat(start.rate);
+        Guess::Begin(first) => {
+            let bend = splat(0.5 * square * first);
+            let place = |u| (splat(1.0) + u) * (splat(1.0) + u);
+            old = [place(node) * bend, place(splat(0.0) - node) * bend];
+            let (rate, gain) = (splat(start.rate + half * first), splat(half * first));
             f = [
-                equation.acceleration(load_right, splat(middle) + drift, rate),
-                equation.acceleration(load_left, splat(middle) - drift, rate),
+                equation.acceleration(
+                    load_right,
+                    splat(middle) + drift + old[0],
+                    node.mul_add(gain, rate),
+                ),
+                equation.acceleration(
+                    load_left,
+                    splat(middle) - drift + old[1],
+                    rate - node * gain,
+                ),
             ];
         }
     }
-    let mut old = [splat(f64::NAN); 2];
     let mut contraction = 0.0_f64;
     let mut last_change = f64::NAN;
     let mut sweeps = 0;
@@ -200,22 +228,24 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
 
         let rate = once_even.mul_add(splat(half), splat(start.rate + half * mean));
         let rate_odd = once_odd * splat(half);
-        let position = twice_even.mul_add(splat(square), splat(middle - square * tilt));
-        let position_odd = node
-            .mul_add(splat(mean), twice_odd)
-            .mul_add(splat(square), drift);
-        let new = [position + position_odd, position - position_odd];
-        let change = (new[0] - old[0])
+        let bend = (twice_even - splat(tilt)) * splat(square);
+        let bend_odd = node.mul_add(splat(mean), twice_odd) * splat(square);
+        let bent = [bend + bend_odd, bend - bend_odd];
+        let new = [
+            splat(middle) + drift + bent[0],
+            splat(middle) - drift + bent[1],
+        ];
+        // Of what f adds, since in a short substep the position would round it away.
+        let change = (bent[0] - old[0])
             .abs()
-            .max((new[1] - old[1]).abs())
+            .max((bent[1] - old[1]).abs())
             .largest();
-        old = new;
+        old = bent;
 
         if sweeps > 1 {
-            let rounding = ROUNDING * start.position.abs();
             let ratio = change / last_change;
             // The error left is the change times the rate of convergence.
-            let expected = if sweeps == 2 {
+            let expected = if ratio.is_nan() {
                 task.contraction
             } else {
                 contraction.max(ratio)
@@ -259,8 +289,8 @@ pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
             if !converging || sweeps == MOST_SWEEPS {
                 return Err(Diverged);
             }
-            last_change = change;
         }
+        last_change = change;
         f = [
             equation.acceleration(load_right, new[0], rate + rate_odd),
             equation.acceleration(load_left, new[1], rate - rate_odd),

@@ -38,6 +38,10 @@ impl Double {
     /// `self + other`.
     #[must_use]
     pub const fn add(self, other: Double) -> Double {
+        // A branch is foreseen; the chain of sums below would be waited for.
+        if other.high == 0.0 && other.low == 0.0 {
+            return self;
+        }
         let sum = exact_sum(self.high, other.high);
         let tail = exact_sum(self.low, other.low);
         let head = exact_sum(sum.high, sum.low + tail.high);
@@ -48,6 +52,9 @@ impl Double {
     /// `self + addend`.
     #[must_use]
     pub const fn plus(self, addend: f64) -> Double {
+        if self.high == 0.0 && self.low == 0.0 {
+            return Double::new(addend);
+        }
         let sum = exact_sum(self.high, addend);
         exact_sum(sum.high, sum.low + self.low)
     }

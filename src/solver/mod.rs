@@ -3,6 +3,7 @@
 //! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
 //! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
 //! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
+//! * `hop`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`batch`]: many motions at once, one in each lane;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
@@ -16,6 +17,7 @@ pub mod batch;
 pub mod collocation;
 pub mod double;
 pub mod extremes;
+mod hop;
 pub mod jet;
 pub mod lanes;
 pub mod limits;
@@ -73,7 +75,19 @@ pub trait LocalEquation {
     /// alternates faster would be mistaken for a slow one.
     fn longest_substep(&self) -> f64;
 
-    /// The time in which the motion from here changes by itself, such as
-    /// √(1/|∂f/∂x|), to guess a first substep.
-    fn time_scale(&self, state: State) -> f64;
+    /// The time in which the motion changes by itself from a state under a load,
+    /// such as √(1/|∂f/∂x|), to guess a first substep.
+    fn time_scale(&self, load: Self::Load<f64>, state: State) -> f64;
+
+    /// The same from a state at the origin of time.
+    #[inline(always)]
+    fn time_scale_from(&self, state: State) -> f64 {
+        self.time_scale(self.load(0.0), state)
+    }
+
+    /// x'' in a state at the origin of time.
+    #[inline(always)]
+    fn acceleration_from(&self, state: State) -> f64 {
+        self.acceleration(self.load(0.0), state.position, state.rate)
+    }
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::collocation::{Closeness, ROUNDING};
+
 /// Order with which the error inside a substep of 16 nodes falls: the first
 /// neglected Legendre coefficient of f (degree 16), twice integrated.
 const ORDER_INSIDE: f64 = 18.0;
@@ -14,6 +16,13 @@ const ORDER_AT_END: f64 = 16.0;
 /// adds up from substep to substep (1e3-fold in 2000 units of time of a
 /// resonant motion).
 const SETTLED: f64 = 2e-4;
+
+/// Errors of this part of the position, one in each step, are not seen beside the
+/// rounding of 1e6 steps.
+const UNSEEN: f64 = 1e-19;
+
+/// Part of the tolerance for what is repeated.
+const REPEATED_SHARE: f64 = 0.001;
 
 /// Contraction above which a shorter substep is cheaper: it grows with the
 /// square of the length, and near 1 the iteration diverges.
@@ -65,10 +74,37 @@ impl StepControl {
         self.tolerance > LOOSE
     }
 
+    /// The same for what is repeated: an orbit is as long as the caller likes, and so
+    /// is its error; the errors of ever new starts add up. Neither costs more than
+    /// a sweep or two.
+    #[must_use]
+    pub fn repeated(&self) -> StepControl {
+        StepControl::new(REPEATED_SHARE * self.tolerance)
+    }
+
     /// How closely the stages of a substep have to be solved.
     #[must_use]
     pub fn settled(&self) -> f64 {
         SETTLED * self.tolerance
+    }
+
+    /// The same of a substep that is a `part` of the motion's time scale, relative to
+    /// the position: the shorter, the more there are.
+    #[must_use]
+    pub fn settled_within(&self, part: f64) -> f64 {
+        (self.settled() * part.min(1.0)).max(UNSEEN)
+    }
+
+    /// The same, for the iteration, from this position on. What a sweep leaves of f
+    /// makes an error of the rate that is, in the time scale, 1/part times that of
+    /// the position; and the rounding of f moves the position by as little as f.
+    #[must_use]
+    pub fn closeness(&self, position: f64, part: f64) -> Closeness {
+        let short = part.min(1.0);
+        Closeness {
+            settled: self.settled_within(part) * position * short,
+            rounding: ROUNDING * position * short * short,
+        }
     }
 
     /// Judges a substep by its estimated error inside, relative to the position,

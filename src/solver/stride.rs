@@ -8,7 +8,7 @@
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::collocation::{Diverged, Series, Substep, Task, solve};
+use super::collocation::{Diverged, Guess, Series, Substep, Task, solve};
 use super::double::Double;
 use super::step_control::{StepControl, Verdict};
 use super::tables::GAUSS_8;
@@ -50,16 +50,25 @@ pub struct Strides {
 /// A way to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// Present time of the model.
-    pub time: Double,
+    /// Time of the model at its begin.
+    pub begin: Double,
+    /// The present, counted from there.
+    pub now: Double,
     /// Present state.
     pub state: State,
-    /// The time to be reached.
+    /// The time to be reached, counted from there.
     pub target: Double,
     /// Positions between which strides may go.
     pub clear: (f64, f64),
     /// How many substeps may still be solved.
     pub budget: u32,
+}
+
+impl Way {
+    /// Present time of the model.
+    pub fn time(&self) -> Double {
+        self.begin.add(self.now)
+    }
 }
 
 /// How strides ended.
@@ -127,20 +136,21 @@ impl Strides {
         way: &mut Way,
     ) -> End {
         loop {
-            let rest = way.target.since(way.time);
-            let local = equation.at(way.time);
+            let rest = way.target.since(way.now);
+            let local = equation.at(way.time());
             let longest = local.longest_substep();
-            if longest.is_finite() && longest < local.time_scale(way.state) {
+            let at_begin = way.now == Double::ZERO;
+            if at_begin && longest.is_finite() && longest < local.time_scale_from(way.state) {
                 return End::Blocked;
             }
             let wanted = match self.length {
                 Some(length) => length,
-                None => local.time_scale(way.state),
+                None => local.time_scale_from(way.state),
             };
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;
             let length = share(rest, free);
-            let (substep, factor) = match self.solve(simd, &local, control, way, length) {
+            let (substep, factor) = match self.solve(simd, &local, control, way, [length, wanted]) {
                 Ok(solved) => solved,
                 Err(end) => return end,
             };
@@ -162,15 +172,15 @@ impl Strides {
             }
             way.state = substep.end;
             if length == rest {
-                way.time = way.target;
+                way.now = way.target;
                 return End::Reached;
             }
-            way.time = way.time.plus(length);
+            way.now = way.now.plus(length);
         }
     }
 
-    /// Solves one stride of the given `length` or, where that is too long, a
-    /// shorter one; returns by which factor the next one may be longer.
+    /// Solves one stride of the given `length`, where `wanted` would do if more were
+    /// asked for, or, where that is too long, a shorter one; returns by which factor the next one may be longer.
     #[inline(always)]
     fn solve<S: Simd, L: LocalEquation>(
         &mut self,
@@ -178,7 +188,7 @@ impl Strides {
         local: &L,
         control: StepControl,
         way: &mut Way,
-        mut length: f64,
+        [mut length, wanted]: [f64; 2],
     ) -> Result<(Substep<PAIRS>, f64), End> {
         let scale = way.state.position.abs();
         let shortest = SHORTEST * length;
@@ -196,8 +206,11 @@ impl Strides {
             let task = Task {
                 start: way.state,
                 length,
-                settled: control.settled() * scale,
-                before: before.as_ref(),
+                closeness: control.closeness(scale, length / wanted),
+                guess: match &before {
+                    Some(before) => Guess::Before(before),
+                    None => Guess::Begin(local.acceleration_from(way.state)),
+                },
                 contraction: (self.contraction * length * length).min(1.0),
             };
             let solved = solve::<S, f64x4<S>, L, PAIRS>(simd, &GAUSS_8, local, &task);
@@ -246,9 +259,10 @@ pub fn state_after<E: Equation>(
     offset: f64,
 ) -> Option<State> {
     let mut way = Way {
-        time,
+        begin: time,
+        now: Double::ZERO,
         state,
-        target: time.plus(offset),
+        target: Double::new(offset),
         clear: (f64::NEG_INFINITY, f64::INFINITY),
         budget: MOST_SHORT,
     };

@@ -58,6 +58,9 @@ pub struct Tables<const P: usize> {
     pub powers_from_odd: Columns<P>,
 }
 
+/// The tables of the method of 4 nodes.
+pub static GAUSS_4: Tables<2> = Tables::new();
+
 /// The tables of the method of 8 nodes.
 pub static GAUSS_8: Tables<4> = Tables::new();
 
@@ -252,6 +255,7 @@ mod tests {
     /// f(u) = uⁿ: every table against the integral done by hand.
     #[test]
     fn powers_up_to_the_number_of_nodes_are_integrated_exactly() {
+        check(&GAUSS_4);
         check(&GAUSS_8);
         check(&GAUSS_16);
     }

@@ -70,6 +70,43 @@ fn inputs_that_jump_between_extremes_move_the_actuator_as_they_should() {
     }
 }
 
+/// Inputs that a controller changes a little at each of many short steps: what the
+/// steps leave does not add up.
+#[test]
+fn many_short_steps_under_changing_inputs_keep_the_tolerance() {
+    let most: f64 = if long() { 200_000.0 } else { 20_000.0 };
+    for (aspect, step) in [
+        (0.01, 0.001),
+        (1.0, 0.001),
+        (1.0, 0.02),
+        (100.0, 0.01),
+        (100.0, 0.1),
+    ] {
+        let actuator = Actuator {
+            aspect,
+            surface: [0.1, 0.05, 0.2],
+        };
+        for tolerance in [1e-10, 1e-13] {
+            let mut random = Random(11);
+            let mut load = Load::constant(0.4, 0.0);
+            let (mut trajectory, mut reference) = (from_rest(tolerance), Taylor::new(1.0, 0.0));
+            let mut time = Double::ZERO;
+            let mut worst = 0.0_f64;
+            for _ in 0..most.min(2000.0 / step) as u32 {
+                let change = random.between(-0.05, 0.05) * step;
+                load.voltage = (load.voltage + change).clamp(0.1, 0.6);
+                trajectory.restart(time);
+                advance(&mut trajectory, &motion(&actuator, &load), step);
+                reference.advance(&actuator, &load, step);
+                time = time.plus(step);
+                worst = worst.max((trajectory.position() - reference.state()[0]).abs());
+            }
+            let what = format!("c = {aspect}, steps of {step}, tolerance {tolerance:e}");
+            assert_at_most(worst, 10.0 * tolerance, &what);
+        }
+    }
+}
+
 /// A voltage of the host that jumps on top of the built-in alternating one.
 #[test]
 fn jumps_leave_the_phase_of_the_alternating_voltage_alone() {

@@ -177,12 +177,12 @@ impl<E: Equation> Course<'_, E> {
             } = self.motions.get(motion)?;
             self.next += 1;
             let local = equation.at(self.start);
-            let free = local.time_scale(*start);
+            let free = local.time_scale_from(*start);
             // An orbit is followed faster alone, a fast drive needs more nodes.
             if equation.is_autonomous() || local.longest_substep() < free {
                 continue;
             }
-            let f = local.acceleration(local.load(0.0), start.position, start.rate);
+            let f = local.acceleration_from(*start);
             fleet.put(index, equation, self.start);
             return Some(Lane {
                 motion,
@@ -276,8 +276,7 @@ impl<E: Equation> Course<'_, E> {
                 offset,
             )?;
             let local = equation.at(time);
-            let f = local.acceleration(local.load(0.0), state.position, state.rate);
-            let correction = -state.rate / f;
+            let correction = -state.rate / local.acceleration_from(state);
             // What is left out is of third order.
             if correction.abs() < near {
                 return Some(state.position + 0.5 * state.rate * correction);

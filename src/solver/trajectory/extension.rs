@@ -3,9 +3,11 @@
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
 use super::Trajectory;
-use crate::solver::collocation::{self, Diverged, Substep, Task};
+use crate::solver::collocation::{self, Diverged, Guess, Substep, Task};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
+use crate::solver::hop::Hop;
+use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
 use crate::solver::pieces::{CAPACITY, Piece};
 use crate::solver::segment::{PAIRS, Segment};
@@ -14,14 +16,10 @@ use crate::solver::stride::{End, Way};
 use crate::solver::tables::GAUSS_16;
 use crate::solver::{Equation, LocalEquation, State};
 
-/// An orbit is repeated as long as the caller likes, and so is its error; the
-/// errors of ever new starts add up. Neither costs more than a sweep or two.
-const REPEATED_SHARE: f64 = 0.001;
-
 /// First substep in units of the motion's time scale.
 const FIRST_SUBSTEP: f64 = 2.0;
 
-/// A substep shorter than this part of the time scale cannot go on.
+/// A substep shorter than this part of what it was to be cannot go on.
 const SHORTEST: f64 = 1e-12;
 
 impl Trajectory {
@@ -37,6 +35,31 @@ impl Trajectory {
         !orbits && self.control.is_loose() && self.strides.are_shorter_than(rest)
     }
 
+    /// Makes the first step from the origin on in one hop, if that is possible.
+    pub(super) fn hops<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
+        let hop = Hop {
+            time: self.origin,
+            state: self.start,
+            length: step,
+            clear: self.clear(),
+        };
+        let end = hop.end(self.level, equation, self.control.repeated());
+        if let Some(state) = end {
+            self.start = state;
+            self.origin = self.origin.plus(step);
+        }
+        end.is_some()
+    }
+
+    /// The positions between which nothing happens.
+    fn clear(&self) -> (f64, f64) {
+        let Limits { lower, upper } = self.limits;
+        match self.extremes {
+            Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
+            None => (lower, upper),
+        }
+    }
+
     /// Follows the motion from the end of the last piece toward `target`, keeping
     /// none of it, and moves the origin there. Returns by how much; `clear` becomes
     /// false where the next stride might meet a limit or an extreme.
@@ -49,22 +72,17 @@ impl Trajectory {
     ) -> Double {
         let begin = self.end();
         self.arrive(begin);
-        let mut control = self.control;
-        if self.restless {
-            control.tolerance *= REPEATED_SHARE;
-        }
-        let extremes = self.extremes.unwrap_or(Extremes {
-            lowest: f64::NEG_INFINITY,
-            highest: f64::INFINITY,
-        });
+        let control = if self.restless {
+            self.control.repeated()
+        } else {
+            self.control
+        };
         let mut way = Way {
-            time: self.origin.add(begin),
+            begin: self.origin.add(begin),
+            now: Double::ZERO,
             state: self.state(),
-            target: self.origin.add(target),
-            clear: (
-                self.limits.lower.max(extremes.lowest),
-                self.limits.upper.min(extremes.highest),
-            ),
+            target: target.sub(begin),
+            clear: self.clear(),
             budget: *budget,
         };
         let end = self.strides.go(self.level, equation, control, &mut way);
@@ -72,9 +90,9 @@ impl Trajectory {
         let shift = if end == End::Reached {
             target
         } else {
-            way.time.sub(self.origin)
+            begin.add(way.now)
         };
-        self.stand_at(way.time, way.state);
+        self.stand_at(way.time(), way.state);
         *clear = end != End::Blocked;
         shift
     }
@@ -92,8 +110,7 @@ impl Trajectory {
         let local = equation.at(self.origin.add(begin));
         if autonomous && self.pieces.count() == 0 && state.rate == 0.0 {
             self.first_turn = Some(Double::ZERO);
-            let load = local.load(0.0);
-            self.at_rest = local.acceleration(load, state.position, 0.0) == 0.0;
+            self.at_rest = local.acceleration_from(state) == 0.0;
             if self.at_rest {
                 return Ok(Double::ZERO);
             }
@@ -138,15 +155,18 @@ impl Trajectory {
         autonomous: bool,
         most: f64,
     ) -> Result<Substep<PAIRS>, f64> {
-        let time_scale = local.time_scale(state);
-        let shortest = (SHORTEST * time_scale).min(0.5 * most);
-        let mut control = self.control;
-        if autonomous || self.restless {
-            control.tolerance *= REPEATED_SHARE;
-        }
+        let control = if autonomous || self.restless {
+            self.control.repeated()
+        } else {
+            self.control
+        };
         let scale = state.position.abs();
-        let free = self.next_length.unwrap_or(FIRST_SUBSTEP * time_scale);
+        let free = match self.next_length {
+            Some(length) => length,
+            None => FIRST_SUBSTEP * local.time_scale_from(state),
+        };
         let most = most.min(local.longest_substep());
+        let shortest = (SHORTEST * free).min(0.5 * most);
         let mut length = free.min(most);
         let last = self.pieces.list().last();
         let before = last.map(|piece| piece.segment.series());
@@ -157,8 +177,11 @@ impl Trajectory {
             let task = Task {
                 start: state,
                 length,
-                settled: control.settled() * scale,
-                before: before.as_ref(),
+                closeness: control.closeness(scale, FIRST_SUBSTEP * length / free),
+                guess: match &before {
+                    Some(before) => Guess::Before(before),
+                    None => Guess::Begin(local.acceleration_from(state)),
+                },
                 contraction: 1.0,
             };
             let solved = solve(self.level, local, &task);

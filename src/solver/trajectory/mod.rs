@@ -57,7 +57,7 @@ pub struct Trajectory {
     next_length: Option<f64>,
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
-    /// Whether long ways are strided over.
+    /// Whether fewer than 16 nodes may do.
     takes_strides: bool,
     /// Advances since the last restart.
     advances: u32,
@@ -211,6 +211,9 @@ impl Trajectory {
             return Ok(Progress::Whole);
         }
         if self.at_rest {
+            return Ok(Progress::Whole);
+        }
+        if self.takes_strides && self.restless && self.advances == 1 && self.hops(equation, step) {
             return Ok(Progress::Whole);
         }
         let mut target = self.now.plus(step);
