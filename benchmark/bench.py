@@ -31,6 +31,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--milliseconds", type=int, default=10, help="least time of a measurement")
     parser.add_argument("--scipy-rounds", type=int, default=1)
+    parser.add_argument("--van-der-pol", type=Path, help="shared library of the Reference FMU VanDerPol")
     parser.add_argument("--cases", default="".join(case.name for case in CASES))
     parser.add_argument("--records", type=Path, help="folder instead of benchmark/records")
     parser.add_argument("--figures", type=Path, default=FIGURES)
@@ -40,7 +41,7 @@ def arguments() -> argparse.Namespace:
 class Rivals:
     """What is there, and what is missing and why."""
 
-    def __init__(self, program: Path, folder: Path):
+    def __init__(self, program: Path, folder: Path, van_der_pol: Path | None):
         self.programs = [rust(program)]
         self.versions = {"Rust rivals": self.programs[0].version}
         self.missing: dict[str, str] = {}
@@ -51,6 +52,9 @@ class Rivals:
             self.versions["SUNDIALS"] = found.version
         except Missing as reason:
             self.missing["SUNDIALS CVODE"] = str(reason)
+        self.van_der_pol = van_der_pol
+        if van_der_pol is None:
+            self.missing["Reference FMU VanDerPol"] = "name its shared library with --van-der-pol"
         try:
             from python_rivals import Heyoka
 
@@ -80,6 +84,9 @@ class Rivals:
         """All methods once, in communication steps."""
         for program in self.programs:
             yield from program.rows("steps", case, options.milliseconds)
+        if self.van_der_pol:
+            library = f"library={self.van_der_pol}"
+            yield from self.programs[0].rows("van_der_pol", case, options.milliseconds, library)
         if self.heyoka:
             yield from self.heyoka.steps(case, 1e-3 * options.milliseconds)
 
@@ -122,7 +129,7 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
 def main() -> None:
     options = arguments()
     with tempfile.TemporaryDirectory() as folder:
-        rivals = Rivals(options.program, Path(folder))
+        rivals = Rivals(options.program, Path(folder), options.van_der_pol)
         for name, reason in rivals.missing.items():
             print(f"missing: {name}: {reason}")
         facts = records.machine()

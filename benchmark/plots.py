@@ -32,8 +32,8 @@ STEP_LOOKS = {
     ("ours", "linear"): ("… and its 1st derivative", {**OURS, "marker": ".", "linewidth": 1.2, "linestyle": "--"}),
     ("ours", "cubic"): ("… and its 1st to 3rd derivative", {**OURS, "marker": ".", "linewidth": 1.2, "linestyle": ":"}),
     ("heyoka", "unchanged"): ("heyoka, call not counted", LOOKS["heyoka"]),
-    ("forward Euler step 0.01 (van der Pol)", "unchanged"): (
-        "forward Euler, step 0.01\n(van der Pol, inexact)",
+    ("Reference FMU VanDerPol", "unchanged"): (
+        "Reference FMU VanDerPol\n(forward Euler, inexact)",
         {"color": style.COLOURS[2], "marker": "^"},
     ),
     ("CVODE Adams continued", "unchanged"): ("CVODE, continued", {"color": style.BLACK, "marker": "x"}),

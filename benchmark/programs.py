@@ -31,8 +31,8 @@ class Program:
         self._path = path
         self.version = version
 
-    def rows(self, pattern: str, case: Case, milliseconds: int) -> Iterator[dict]:
-        command = [str(self._path), pattern, f"milliseconds={milliseconds}", *case.arguments()]
+    def rows(self, pattern: str, case: Case, milliseconds: int, *more: str) -> Iterator[dict]:
+        command = [str(self._path), pattern, f"milliseconds={milliseconds}", *case.arguments(), *more]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             raise SystemExit(f"{self._path.name} {pattern}, case {case.name}: {done.stderr.strip()[-2000:]}")

@@ -14,8 +14,8 @@ use fmi::fmi2::binding::{
 
 use crate::case::Case;
 
-type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, i32) -> fmi2Status;
-type GetReal = unsafe extern "C" fn(
+pub type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, i32) -> fmi2Status;
+pub type GetReal = unsafe extern "C" fn(
     fmi2Component,
     *const fmi2ValueReference,
     usize,
@@ -44,6 +44,34 @@ unsafe extern "C" fn silent(
 ) {
 }
 
+/// Callbacks of a host that is not interested.
+pub fn callbacks() -> fmi2CallbackFunctions {
+    unsafe extern "C" fn allocate(count: usize, size: usize) -> *mut c_void {
+        // SAFETY: plain C.
+        unsafe { libc::calloc(count, size) }
+    }
+    unsafe extern "C" fn free(memory: *mut c_void) {
+        // SAFETY: memory of `allocate`.
+        unsafe { libc::free(memory) };
+    }
+    let named = silent
+        as unsafe extern "C" fn(
+            *mut c_void,
+            *const c_char,
+            fmi2Status,
+            *const c_char,
+            *const c_char,
+        );
+    fmi2CallbackFunctions {
+        // SAFETY: a callee on these platforms may ignore variadic arguments.
+        logger: Some(unsafe { std::mem::transmute::<*const (), _>(named as *const ()) }),
+        allocateMemory: Some(allocate),
+        freeMemory: Some(free),
+        stepFinished: None,
+        componentEnvironment: null_mut(),
+    }
+}
+
 /// An instance in step mode, called through pointers as in a shared library.
 pub struct Host {
     component: fmi2Component,
@@ -66,22 +94,7 @@ impl Host {
     /// left to the caller.
     pub fn new(case: &Case, tolerance: f64, built_in: bool) -> Host {
         let guid = CString::new(GUID).expect("no NUL");
-        let named = silent
-            as unsafe extern "C" fn(
-                *mut c_void,
-                *const c_char,
-                fmi2Status,
-                *const c_char,
-                *const c_char,
-            );
-        let callbacks = Box::new(fmi2CallbackFunctions {
-            // SAFETY: a callee on these platforms may ignore variadic arguments.
-            logger: Some(unsafe { std::mem::transmute::<*const (), _>(named as *const ()) }),
-            allocateMemory: None,
-            freeMemory: None,
-            stepFinished: None,
-            componentEnvironment: null_mut(),
-        });
+        let callbacks = Box::new(callbacks());
         // SAFETY: all pointers live during the call, the callbacks longer.
         let component = unsafe {
             abi::fmi2Instantiate(

@@ -2,11 +2,10 @@
 //! of CSV. `benchmark/bench.py` calls it in turns with the other rivals.
 //!
 //! ```text
-//! benchmark free|steps|skips milliseconds=10 c=100 gamma_s=… reference=case_a.csv
+//! benchmark free|steps|van_der_pol|skips milliseconds=10 c=100 gamma_s=… reference=case_a.csv
 //! ```
 
 mod case;
-mod euler;
 mod free;
 mod host;
 mod ours;
@@ -15,6 +14,7 @@ mod row;
 mod skips;
 mod steps;
 mod timing;
+mod van_der_pol;
 
 use std::collections::HashMap;
 use std::time::Duration;
@@ -34,7 +34,8 @@ fn main() {
     match pattern.as_str() {
         "free" => free::run(&case, least),
         "steps" => steps::run(&case, least),
+        "van_der_pol" => steps::van_der_pol(&case, &arguments["library"], least),
         "skips" => skips::run(&case, least),
-        _ => panic!("the first argument is free, steps or skips"),
+        _ => panic!("the first argument is free, steps, van_der_pol or skips"),
     }
 }

@@ -315,8 +315,8 @@ impl LocalEquation for LocalUnfolded {
         self.motion.longest_substep()
     }
 
-    fn time_scale(&self, load: Self::Load<f64>, state: State) -> f64 {
-        self.motion.time_scale(load, state)
+    fn time_scale(&self, state: State) -> f64 {
+        self.motion.time_scale(state)
     }
 }
 
@@ -361,7 +361,7 @@ impl LocalEquation for LocalIdeal {
         self.0.longest_substep()
     }
 
-    fn time_scale(&self, load: Self::Load<f64>, state: State) -> f64 {
-        self.0.time_scale(load, state)
+    fn time_scale(&self, state: State) -> f64 {
+        self.0.time_scale(state)
     }
 }

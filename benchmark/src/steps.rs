@@ -4,11 +4,11 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use crate::case::{Case, Pair};
-use crate::euler::VanDerPol;
 use crate::host::Host;
 use crate::rivals::one_step;
 use crate::row::Row;
 use crate::timing::{BATCHES, median};
+use crate::van_der_pol::VanDerPol;
 
 const STEPS: [f64; 5] = [0.001, 0.01, 0.1, 1.0, 10.0];
 
@@ -27,6 +27,12 @@ const ALLOWED: f64 = 1e3;
 
 /// Inputs unchanged, and nothing read after the step.
 const STEP_ALONE: &str = "unchanged; nothing read";
+
+/// The voltage set to what it is.
+const SET_AGAIN: &str = "set to what they are";
+
+/// A voltage that is held until the next step; nothing read after it.
+const HELD_ALONE: &str = "held; nothing read";
 
 /// A run in communication steps to a time of the reference.
 struct Plan<'a> {
@@ -91,12 +97,44 @@ fn voltage(case: &Case, time: f64) -> [f64; 4] {
 pub fn run(case: &Case, least: Duration) {
     for step in STEPS {
         let plan = Plan::new(case, step);
-        euler(&plan, least);
         for tolerance in TOLERANCES {
             unchanged(&plan, tolerance, least);
         }
         for (name, order) in CHANGES {
             changing(&plan, name, order, least);
+        }
+    }
+}
+
+/// Times the FMU of another equation in the same pattern, loaded from its `library`.
+pub fn van_der_pol(case: &Case, library: &str, least: Duration) {
+    let library = VanDerPol::load(library);
+    for step in STEPS {
+        let Plan { calls, .. } = Plan::new(case, step);
+        let start = || library.start();
+        let read = nanoseconds(least, calls, start, |oscillator| {
+            for call in 0..calls {
+                oscillator.step(call as f64 * step, step);
+                black_box(oscillator.displacement());
+            }
+        });
+        let alone = nanoseconds(least, calls, start, |oscillator| {
+            for call in 0..calls {
+                oscillator.step(call as f64 * step, step);
+            }
+        });
+        for (inputs, nanoseconds) in [("unchanged", read), (STEP_ALONE, alone)] {
+            Row {
+                method: "Reference FMU VanDerPol",
+                tolerance: 0.01,
+                step: Some(step),
+                inputs,
+                nanoseconds,
+                error: None,
+                hold_error: None,
+                note: "another equation; time only".into(),
+            }
+            .print();
         }
     }
 }
@@ -122,33 +160,6 @@ fn nanoseconds<H>(
     };
     one();
     Some(median([(); BATCHES].map(|()| one())))
-}
-
-fn euler(plan: &Plan, least: Duration) {
-    let nanoseconds = nanoseconds(least, plan.calls, VanDerPol::new, |oscillator| {
-        for call in 0..plan.calls {
-            black_box(&mut *oscillator).step((call + 1) as f64 * plan.step);
-            black_box(oscillator.get());
-        }
-    });
-    let alone = self::nanoseconds(least, plan.calls, VanDerPol::new, |oscillator| {
-        for call in 0..plan.calls {
-            black_box(&mut *oscillator).step((call + 1) as f64 * plan.step);
-        }
-    });
-    for (inputs, nanoseconds) in [("unchanged", nanoseconds), (STEP_ALONE, alone)] {
-        Row {
-            method: "forward Euler step 0.01 (van der Pol)",
-            tolerance: 0.01,
-            step: Some(plan.step),
-            inputs,
-            nanoseconds,
-            error: None,
-            hold_error: None,
-            note: "another equation; time only".into(),
-        }
-        .print();
-    }
 }
 
 fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
@@ -197,6 +208,21 @@ fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
         |host| {
             for call in 0..plan.calls {
                 host.step(call as f64 * step, step);
+            }
+        },
+    );
+    row.print();
+    row.inputs = SET_AGAIN;
+    let same = [case.voltage, 0.0, 0.0, 0.0];
+    row.nanoseconds = nanoseconds(
+        least,
+        plan.calls,
+        || Host::new(case, tolerance, true),
+        |host| {
+            for call in 0..plan.calls {
+                host.set(black_box(&same), 0);
+                host.step(call as f64 * step, step);
+                black_box(host.stretch());
             }
         },
     );
@@ -251,6 +277,21 @@ fn changing(plan: &Plan, name: &str, order: usize, least: Duration) {
             row.note = "not timed: error above 1000 tolerances".into();
         }
         row.print();
+        if order == 0 && row.nanoseconds.is_some() {
+            row.inputs = HELD_ALONE;
+            row.nanoseconds = nanoseconds(
+                least,
+                plan.calls,
+                || Host::new(case, tolerance, false),
+                |host| {
+                    for (call, input) in inputs.iter().enumerate() {
+                        host.set(input, order);
+                        host.step(call as f64 * step, step);
+                    }
+                },
+            );
+            row.print();
+        }
     }
 }
 

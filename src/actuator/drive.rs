@@ -281,6 +281,12 @@ impl LocalDrive {
         self.prestress.at(offset)
     }
 
+    /// What the voltage may be for a while, by size.
+    #[inline(always)]
+    pub fn largest_voltage(&self) -> f64 {
+        self.voltage.value().abs() + self.amplitude.abs()
+    }
+
     /// Angular frequency of the alternating voltage, 0 where there is none.
     #[must_use]
     pub fn frequency(&self) -> f64 {

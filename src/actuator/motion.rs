@@ -133,7 +133,8 @@ impl LocalEquation for LocalMotion {
 
     /// 1/√|∂λ''/∂λ| with the terms of the stiffness added up by size, since
     /// their sum may vanish.
-    fn time_scale(&self, load: Load<f64>, state: State) -> f64 {
+    fn time_scale(&self, state: State) -> f64 {
+        let voltage = self.drive.largest_voltage();
         let square = state.position * state.position;
         let Coefficients {
             inertia,
@@ -143,7 +144,7 @@ impl LocalEquation for LocalMotion {
         } = self.coefficients;
         let stiffness = 5.0 / square.powi(3)
             + linear.abs()
-            + square * (3.0 * (cubic - load.voltage_squared).abs() + square * 5.0 * quintic);
+            + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic);
         let mass = inertia + 2.0 / square.powi(3);
         (mass / stiffness).sqrt()
     }

@@ -25,6 +25,8 @@ pub struct Hop {
     pub time: Double,
     /// State there.
     pub state: State,
+    /// About what f is at its begin, such as what it was before the equation changed.
+    pub f: Option<f64>,
     /// How long it is.
     pub length: f64,
     /// Positions between which it may go.
@@ -32,14 +34,14 @@ pub struct Hop {
 }
 
 impl Hop {
-    /// The state at its end; nothing where it is too long or does not stay between
+    /// The state and f at its end; nothing where it is too long or does not stay between
     /// the clear positions.
     pub fn end<E: Equation>(
         &self,
         level: Level,
         equation: &E,
         control: StepControl,
-    ) -> Option<State> {
+    ) -> Option<(State, f64)> {
         dispatch!(level, simd => self.end_with(simd, equation, control))
     }
 
@@ -49,20 +51,22 @@ impl Hop {
         simd: S,
         equation: &E,
         control: StepControl,
-    ) -> Option<State> {
+    ) -> Option<(State, f64)> {
         let local = equation.at(self.time);
-        let load = local.load(0.0);
-        let part = self.length / local.time_scale(load, self.state);
+        let part = self.length / local.time_scale(self.state);
         if part.is_nan() || part >= SHORT {
             return None;
         }
         let scale = self.state.position.abs();
-        let first = local.acceleration(load, self.state.position, self.state.rate);
+        let f = match self.f {
+            Some(f) => f,
+            None => local.acceleration_from(self.state),
+        };
         let task = Task {
             start: self.state,
             length: self.length,
             closeness: control.closeness(scale, part),
-            guess: Guess::Begin(first),
+            guess: Guess::Begin(f),
             contraction: 1.0,
         };
         let substep = of_four(simd, &local, &task).ok()?;
@@ -71,8 +75,15 @@ impl Hop {
         let good = *reach.start() > lowest
             && *reach.end() < highest
             && error(&substep, part) <= control.settled_within(part) * scale;
-        good.then_some(substep.end)
+        good.then(|| (substep.end, last_f(&substep)))
     }
+}
+
+/// f at the end: each Legendre polynomial is 1 there.
+#[inline(always)]
+fn last_f(substep: &Substep<PAIRS>) -> f64 {
+    let Series { half, even, odd } = &substep.series;
+    (even.iter().sum::<f64>() + odd.iter().sum::<f64>()) / (half * half)
 }
 
 #[inline(always)]
@@ -140,7 +151,7 @@ mod tests {
             f64::INFINITY
         }
 
-        fn time_scale(&self, _load: f64, state: State) -> f64 {
+        fn time_scale(&self, state: State) -> f64 {
             (1.0 + 5.0 * state.position.powi(-6)).sqrt().recip()
         }
     }
@@ -156,7 +167,7 @@ mod tests {
                 position: 0.7 + random(2),
                 rate: random(3) - 0.5,
             };
-            let time_scale = equation.time_scale_from(state);
+            let time_scale = equation.time_scale(state);
             let part = 0.1 + 0.4 * random(4);
             let length = part * time_scale;
             let task = Task {

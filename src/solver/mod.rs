@@ -75,15 +75,9 @@ pub trait LocalEquation {
     /// alternates faster would be mistaken for a slow one.
     fn longest_substep(&self) -> f64;
 
-    /// The time in which the motion changes by itself from a state under a load,
-    /// such as √(1/|∂f/∂x|), to guess a first substep.
-    fn time_scale(&self, load: Self::Load<f64>, state: State) -> f64;
-
-    /// The same from a state at the origin of time.
-    #[inline(always)]
-    fn time_scale_from(&self, state: State) -> f64 {
-        self.time_scale(self.load(0.0), state)
-    }
+    /// The time in which the motion from here changes by itself, such as
+    /// √(1/|∂f/∂x|), to guess a first substep.
+    fn time_scale(&self, state: State) -> f64;
 
     /// x'' in a state at the origin of time.
     #[inline(always)]

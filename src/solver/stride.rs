@@ -140,12 +140,12 @@ impl Strides {
             let local = equation.at(way.time());
             let longest = local.longest_substep();
             let at_begin = way.now == Double::ZERO;
-            if at_begin && longest.is_finite() && longest < local.time_scale_from(way.state) {
+            if at_begin && longest.is_finite() && longest < local.time_scale(way.state) {
                 return End::Blocked;
             }
             let wanted = match self.length {
                 Some(length) => length,
-                None => local.time_scale_from(way.state),
+                None => local.time_scale(way.state),
             };
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;

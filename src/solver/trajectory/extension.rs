@@ -40,12 +40,14 @@ impl Trajectory {
         let hop = Hop {
             time: self.origin,
             state: self.start,
+            f: self.last_f,
             length: step,
             clear: self.clear(),
         };
         let end = hop.end(self.level, equation, self.control.repeated());
-        if let Some(state) = end {
+        if let Some((state, f)) = end {
             self.start = state;
+            self.last_f = Some(f);
             self.origin = self.origin.plus(step);
         }
         end.is_some()
@@ -163,7 +165,7 @@ impl Trajectory {
         let scale = state.position.abs();
         let free = match self.next_length {
             Some(length) => length,
-            None => FIRST_SUBSTEP * local.time_scale_from(state),
+            None => FIRST_SUBSTEP * local.time_scale(state),
         };
         let most = most.min(local.longest_substep());
         let shortest = (SHORTEST * free).min(0.5 * most);

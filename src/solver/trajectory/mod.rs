@@ -64,6 +64,8 @@ pub struct Trajectory {
     /// The last start was good for a single advance: the host changes the
     /// equation at each communication point, and looking ahead is of no use.
     restless: bool,
+    /// f at the end of the last hop.
+    last_f: Option<f64>,
     /// Where communication points lie far apart.
     strides: Strides,
     /// How far the motion has swung, where that is recorded.
@@ -97,6 +99,7 @@ impl Trajectory {
             takes_strides: true,
             advances: 0,
             restless: false,
+            last_f: None,
             strides: Strides::NONE,
             extremes: None,
             recorded: Double::ZERO,
@@ -174,8 +177,10 @@ impl Trajectory {
         };
         let State { position, rate } = self.start;
         let length = self.next_length.unwrap_or(1.0);
+        let f = self.last_f.unwrap_or(0.0);
         position.is_finite()
             && rate.is_finite()
+            && f.is_finite()
             && self.control.is_sound()
             && self.limits.are_sound()
             && instants.iter().all(finite)
