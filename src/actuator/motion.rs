@@ -142,10 +142,11 @@ impl LocalEquation for LocalMotion {
             cubic,
             quintic,
         } = self.coefficients;
-        let stiffness = 5.0 / square.powi(3)
+        let inverse = 1.0 / square.powi(3);
+        let stiffness = 5.0 * inverse
             + linear.abs()
             + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic);
-        let mass = inertia + 2.0 / square.powi(3);
+        let mass = inertia + 2.0 * inverse;
         (mass / stiffness).sqrt()
     }
 }

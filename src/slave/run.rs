@@ -50,8 +50,8 @@ impl Run {
 
     /// The present time of the model.
     #[must_use]
-    pub fn time(&self) -> Double {
-        self.time
+    pub fn time(&self) -> &Double {
+        &self.time
     }
 
     /// The motion so far.
@@ -62,8 +62,8 @@ impl Run {
 
     /// Whether and when the actuator has collapsed.
     #[must_use]
-    pub fn collapse(&self) -> Option<Collapse> {
-        self.collapse
+    pub fn collapse(&self) -> Option<&Collapse> {
+        self.collapse.as_ref()
     }
 
     pub(super) fn scene_changed(&mut self) {

@@ -103,7 +103,8 @@ fn of_four<S: Simd, L: LocalEquation>(
 fn error(substep: &Substep<PAIRS>, part: f64) -> f64 {
     let Series { even, odd, .. } = &substep.series;
     let size = (even[0].abs() + odd[0].abs()).max(f64::MIN_POSITIVE);
-    let (second, third) = (even[1].abs() / size, odd[1].abs() / size);
+    let inverse = 1.0 / size;
+    let (second, third) = (even[1].abs() * inverse, odd[1].abs() * inverse);
     let missed = (second * second).max(third * third.sqrt());
     let half = 0.5 * part;
     size * missed * (half * half) * (half * half)

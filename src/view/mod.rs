@@ -44,9 +44,9 @@ pub struct View<'a> {
     /// The state of the motion.
     pub place: Place<'a>,
     /// Time of the model.
-    pub time: Double,
+    pub time: &'a Double,
     /// Whether and when the motion came to a limit.
-    pub collapse: Option<Collapse>,
+    pub collapse: Option<&'a Collapse>,
 }
 
 impl Quantities<f64> for View<'_> {
@@ -80,7 +80,7 @@ impl Quantities<f64> for View<'_> {
     }
 
     fn total_voltage(&self) -> f64 {
-        self.scene.drive.at(self.time).voltage(0.0)
+        self.scene.drive.at(*self.time).voltage(0.0)
     }
 }
 
@@ -115,14 +115,14 @@ impl View<'_> {
     /// The present as it changes in a direction.
     #[must_use]
     pub fn along(&self, direction: &Direction) -> Moment<Dual> {
-        Moment::along(self.scene, self.time, self.state(), self.held(), direction)
+        Moment::along(self.scene, *self.time, self.state(), self.held(), direction)
     }
 
     /// The motion from now on, as power series in the time that are right up to
     /// the derivatives of `order`, at most [`HIGHEST_ORDER`].
     #[must_use]
     pub fn from_now_on(&self, order: usize) -> Moment<Series> {
-        Moment::from_now_on(self.scene, self.time, self.state(), self.held(), order)
+        Moment::from_now_on(self.scene, *self.time, self.state(), self.held(), order)
     }
 
     /// The voltage φ that the host drives, without the built-in drive.

@@ -211,14 +211,25 @@ impl Trajectory {
             self.now = self.now.plus(self.direction * step);
             return Ok(Progress::Whole);
         }
+        if self.takes_strides && self.restless && self.advances == 1 && self.hops(equation, step) {
+            return Ok(Progress::Whole);
+        }
+        self.advance_further(equation, step)
+    }
+
+    /// The same where the present piece does not suffice: out of the way of the
+    /// steps for which it does, with its large frame.
+    #[inline(never)]
+    fn advance_further<E: Equation>(
+        &mut self,
+        equation: &E,
+        step: f64,
+    ) -> Result<Progress, Failure> {
         if let Some(orbit) = self.orbit {
             self.run_orbit(orbit, step);
             return Ok(Progress::Whole);
         }
         if self.at_rest {
-            return Ok(Progress::Whole);
-        }
-        if self.takes_strides && self.restless && self.advances == 1 && self.hops(equation, step) {
             return Ok(Progress::Whole);
         }
         let mut target = self.now.plus(step);
