@@ -22,8 +22,8 @@ use super::{LocalEquation, State};
 /// Sweeps after which an iteration that still moves is given up.
 const MOST_SWEEPS: u32 = 40;
 
-/// Corrections of a position by less than this part of it are rounding.
-pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Changes of what f adds to a position by less than this part of it are rounding.
+pub const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.

@@ -2,20 +2,24 @@
 //!
 //! Between communication points that lie farther apart than a substep, nothing
 //! of a substep is needed but its end, which superconverges: 8 nodes reach
-//! order 16 there, at half the work of the 16 whose polynomial is as accurate
-//! inside. The last stride ends at the communication point itself.
+//! order 16 there, 16 nodes order 32. The last stride ends at the communication
+//! point itself.
 
-use fearless_simd::{Level, Simd, dispatch, f64x4};
+use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 use serde::{Deserialize, Serialize};
 
 use super::collocation::{Diverged, Guess, Series, Substep, Task, solve};
 use super::double::Double;
+use super::lanes::Lanes;
 use super::step_control::{StepControl, Verdict};
-use super::tables::GAUSS_8;
+use super::tables::{GAUSS_8, GAUSS_16, Tables};
 use super::{Equation, LocalEquation, State};
 
-/// Node pairs of a stride.
+/// Node pairs of a stride at a loose tolerance.
 pub const PAIRS: usize = 4;
+
+/// Node pairs of a stride at a tight one.
+const MOST_PAIRS: usize = super::segment::PAIRS;
 
 /// The end of a stride misses less than this part of the estimate below: 16 to
 /// 26 000 times less on an AC motion near resonance, 2000 times in the mean.
@@ -41,8 +45,8 @@ const LEAST: f64 = 1e-3;
 pub struct Strides {
     /// Length of the next one, where it is free.
     length: Option<f64>,
-    /// Half the length of the last one and its series, even and odd.
-    before: Option<(f64, [f64; PAIRS], [f64; PAIRS])>,
+    /// Half the length of the last one and its series, even and odd, as far as it has one.
+    before: Option<(f64, [f64; MOST_PAIRS], [f64; MOST_PAIRS])>,
     /// The contraction to be expected by the square of the length.
     contraction: f64,
 }
@@ -116,7 +120,7 @@ impl Strides {
         before && self.length.is_none_or(positive) && self.contraction >= 0.0
     }
 
-    /// Goes the way as far as strides can.
+    /// Goes the way as far as strides of 8 nodes can.
     pub fn go<E: Equation>(
         &mut self,
         level: Level,
@@ -124,13 +128,48 @@ impl Strides {
         control: StepControl,
         way: &mut Way,
     ) -> End {
-        dispatch!(level, simd => self.go_with(simd, equation, control, way))
+        dispatch!(level, simd => self.by_eight(simd, equation, control, way))
+    }
+
+    /// The same with 16 nodes. Strides of both kinds must not follow each other
+    /// without a restart.
+    pub fn go_finely<E: Equation>(
+        &mut self,
+        level: Level,
+        equation: &E,
+        control: StepControl,
+        way: &mut Way,
+    ) -> End {
+        dispatch!(level, simd => self.by_sixteen(simd, equation, control, way))
     }
 
     #[inline(always)]
-    fn go_with<S: Simd, E: Equation>(
+    fn by_eight<S: Simd, E: Equation>(
         &mut self,
         simd: S,
+        equation: &E,
+        control: StepControl,
+        way: &mut Way,
+    ) -> End {
+        self.go_with::<S, f64x4<S>, E, PAIRS>(simd, &GAUSS_8, equation, control, way)
+    }
+
+    #[inline(always)]
+    fn by_sixteen<S: Simd, E: Equation>(
+        &mut self,
+        simd: S,
+        equation: &E,
+        control: StepControl,
+        way: &mut Way,
+    ) -> End {
+        self.go_with::<S, f64x8<S>, E, MOST_PAIRS>(simd, &GAUSS_16, equation, control, way)
+    }
+
+    #[inline(always)]
+    fn go_with<S: Simd, V: Lanes<S, P>, E: Equation, const P: usize>(
+        &mut self,
+        simd: S,
+        tables: &Tables<P>,
         equation: &E,
         control: StepControl,
         way: &mut Way,
@@ -139,8 +178,8 @@ impl Strides {
             let rest = way.target.since(way.now);
             let local = equation.at(way.time());
             let longest = local.longest_substep();
-            let at_begin = way.now == Double::ZERO;
-            if at_begin && longest.is_finite() && longest < local.time_scale(way.state) {
+            let few = P < MOST_PAIRS && way.now == Double::ZERO;
+            if few && longest.is_finite() && longest < local.time_scale(way.state) {
                 return End::Blocked;
             }
             let wanted = match self.length {
@@ -150,7 +189,14 @@ impl Strides {
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;
             let length = share(rest, free);
-            let (substep, factor) = match self.solve(simd, &local, control, way, [length, wanted]) {
+            let (substep, factor) = match self.solve::<S, V, E::Local, P>(
+                simd,
+                tables,
+                &local,
+                control,
+                way,
+                [length, wanted],
+            ) {
                 Ok(solved) => solved,
                 Err(end) => return end,
             };
@@ -161,7 +207,10 @@ impl Strides {
             }
             let Series { half, even, odd } = substep.series;
             let length = 2.0 * half;
-            self.before = Some((half, even, odd));
+            let (mut all_even, mut all_odd) = ([0.0; MOST_PAIRS], [0.0; MOST_PAIRS]);
+            all_even[..P].copy_from_slice(&even);
+            all_odd[..P].copy_from_slice(&odd);
+            self.before = Some((half, all_even, all_odd));
             // A stride that was cut short says little about the next one.
             let next = factor * length;
             if last {
@@ -182,14 +231,15 @@ impl Strides {
     /// Solves one stride of the given `length`, where `wanted` would do if more were
     /// asked for, or, where that is too long, a shorter one; returns by which factor the next one may be longer.
     #[inline(always)]
-    fn solve<S: Simd, L: LocalEquation>(
+    fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
         &mut self,
         simd: S,
+        tables: &Tables<P>,
         local: &L,
         control: StepControl,
         way: &mut Way,
         [mut length, wanted]: [f64; 2],
-    ) -> Result<(Substep<PAIRS>, f64), End> {
+    ) -> Result<(Substep<P>, f64), End> {
         let scale = way.state.position.abs();
         let shortest = SHORTEST * length;
         loop {
@@ -200,9 +250,11 @@ impl Strides {
             if length.is_nan() || length <= shortest {
                 return Err(End::Blocked);
             }
-            let before = self
-                .before
-                .map(|(half, even, odd)| Series { half, even, odd });
+            let before = self.before.map(|(half, even, odd)| Series {
+                half,
+                even: std::array::from_fn(|k| even[k]),
+                odd: std::array::from_fn(|k| odd[k]),
+            });
             let task = Task {
                 start: way.state,
                 length,
@@ -213,11 +265,11 @@ impl Strides {
                 },
                 contraction: (self.contraction * length * length).min(1.0),
             };
-            let solved = solve::<S, f64x4<S>, L, PAIRS>(simd, &GAUSS_8, local, &task);
+            let solved = solve::<S, V, L, P>(simd, tables, local, &task);
             let factor = match solved {
                 Ok(substep) => {
                     let error = end_error(&substep) / scale;
-                    match control.judge_stride(error, substep.contraction) {
+                    match control.judge_stride::<P>(error, substep.contraction) {
                         Verdict::Accept(factor) => return Ok((substep, factor)),
                         Verdict::Reject(factor) => factor,
                     }
@@ -275,7 +327,7 @@ pub fn state_after<E: Equation>(
 /// geometrically reaches at degree 4P, the first that is integrated wrongly,
 /// the square of what it has at degree 2P, by its size.
 #[inline(always)]
-pub fn end_error(substep: &Substep<PAIRS>) -> f64 {
+pub fn end_error<const P: usize>(substep: &Substep<P>) -> f64 {
     let Series { even, odd, .. } = &substep.series;
     let size = even[0].abs() + odd[0].abs() + even[1].abs();
     let tail = substep.tail();

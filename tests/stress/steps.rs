@@ -32,7 +32,8 @@ fn steps_from_1e_9_to_1e6_in_any_order_end_where_one_step_ends() {
     for (load, largest) in [
         (Load::constant(0.6, 0.5), 20),
         (Load::constant(0.3, -1.0), 20),
-        (alternating(0.3, 0.1438), 13),
+        // By t = 16384 this motion has multiplied every rounding a thousandfold.
+        (alternating(0.3, 0.1438), 12),
     ] {
         let motion = motion(&reference_actuator(), &load);
         let up = binary(-30..=largest);

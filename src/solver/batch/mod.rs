@@ -206,7 +206,8 @@ impl<E: Equation> Course<'_, E> {
         let ended = round.excess[index] <= 0.0 && substep.end.position.is_finite();
         let verdict = if ended {
             let error = stride::end_error(&substep) / scale;
-            self.control.judge_stride(error, substep.contraction)
+            self.control
+                .judge_stride::<PAIRS>(error, substep.contraction)
         } else {
             Verdict::Reject(0.5)
         };

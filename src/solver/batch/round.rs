@@ -4,7 +4,7 @@ use fearless_simd::Simd;
 
 use super::{Abreast, Fleet, LANES, Lane, Row};
 use crate::solver::State;
-use crate::solver::collocation::{self, ROUNDING, Series, Substep};
+use crate::solver::collocation::{self, Series, Substep};
 use crate::solver::double::Double;
 use crate::solver::lanes::Lanes;
 use crate::solver::step_control::StepControl;
@@ -13,6 +13,9 @@ use crate::solver::tables::GAUSS_8;
 
 /// Sweeps after which a lane that still moves takes a shorter stride.
 const MOST_SWEEPS: u32 = 12;
+
+/// Corrections of a position by less than this part of it are rounding.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// A stride in each lane: what is asked for, and what came out.
 #[derive(Clone, Debug)]

@@ -32,7 +32,7 @@ impl Trajectory {
             return true;
         }
         let orbits = self.follows_orbits && equation.is_autonomous();
-        !orbits && self.control.is_loose() && self.strides.are_shorter_than(rest)
+        !orbits && self.strides.are_shorter_than(rest)
     }
 
     /// Makes the first step from the origin on in one hop, if that is possible.
@@ -47,7 +47,7 @@ impl Trajectory {
         let end = hop.end(self.level, equation, self.control.repeated());
         if let Some((state, f)) = end {
             self.start = state;
-            self.last_f = Some(f);
+            self.last_f = Some(f).filter(|f| f.is_finite());
             self.origin = self.origin.plus(step);
         }
         end.is_some()
@@ -87,7 +87,12 @@ impl Trajectory {
             clear: self.clear(),
             budget: *budget,
         };
-        let end = self.strides.go(self.level, equation, control, &mut way);
+        let (level, strides) = (self.level, &mut self.strides);
+        let end = if self.restless || control.is_loose() {
+            strides.go(level, equation, control, &mut way)
+        } else {
+            strides.go_finely(level, equation, control, &mut way)
+        };
         *budget = way.budget;
         let shift = if end == End::Reached {
             target
