@@ -32,22 +32,22 @@ heading = @printf '\n==> %s\n' "$(1)"
 .PHONY: help run fmu fmu-all guide paper examples test test-platforms stress soak fuzz bench env clean
 
 help:
-	@echo 'make run    build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
-	@echo 'make paper  regenerate the figures and tables of the paper into target/paper (some minutes);'
-	@echo '            WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
-	@echo 'make examples  run the examples (examples/README.md), with their plots in target/examples'
-	@echo 'make test   run every test'
-	@echo 'make stress run the long form of the stress tests (some minutes)'
-	@echo 'make soak   run the long form of the tests of robustness, and fuzz (some minutes)'
-	@echo 'make fuzz   fuzz each target for FUZZ_SECONDS (60)'
-	@echo 'make bench  time the actuator and its rivals (benchmark/README.md)'
-	@echo 'make fmu    build and pack the FMU only, for 64-bit Linux'
+	@echo 'make run             build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
+	@echo 'make paper           regenerate the figures and tables of the paper into target/paper (some minutes);'
+	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
+	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
+	@echo 'make test            run every test'
+	@echo 'make stress          run the long form of the stress tests (some minutes)'
+	@echo 'make soak            run the long form of the tests of robustness, and fuzz (some minutes)'
+	@echo 'make fuzz            fuzz each target for FUZZ_SECONDS (60)'
+	@echo 'make bench           time the actuator and its rivals (benchmark/README.md)'
+	@echo 'make fmu             build and pack the FMU only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
-	@echo 'make guide  write the user'"'"'s guide to target/guide/index.html'
-	@echo 'make env    print what plain cargo commands need: eval "$$(make -s env)"'
-	@echo 'make clean  remove target and .venv'
-	@echo 'PYTHON=...  the Python to use, 3.11 or later (default: python3)'
+	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
+	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
+	@echo 'make clean           remove target and .venv'
+	@echo 'PYTHON=...           the Python to use, 3.11 or later (default: python3)'
 
 run: fmu
 	$(call heading,Demonstration)
@@ -83,6 +83,8 @@ test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED)
 	@if cargo clippy --version >/dev/null 2>&1; then \
 	$(CARGO) clippy --workspace --all-targets -- -D warnings; \
 	else echo 'skipped: this Rust has no clippy (rustup component add clippy)'; fi
+	$(call heading,Documentation)
+	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --workspace --no-deps
 	$(call heading,FMU)
 	@$(CARGO) fmu
 	$(call heading,Rust tests)

@@ -380,6 +380,53 @@ fn a_stored_motion_goes_on_bit_for_bit() {
     }
 }
 
+/// Numbers that do not fit together as those of one motion are noticed.
+#[test]
+fn a_forged_motion_is_not_sound() {
+    let stored = |mut trajectory: Trajectory| {
+        advance(&mut trajectory, &direct(SURFACE, 0.6, 0.5), 77.7);
+        serde_json::to_value(&trajectory).expect("it can be stored")
+    };
+    let plain = stored(from_rest(1e-11));
+    let recording = stored(from_rest(1e-11).recording_extremes());
+    let sound =
+        |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_sound());
+    assert!(sound(plain.clone()) && sound(recording.clone()));
+    let forged = |stored: &serde_json::Value, place: &str, more: f64| {
+        let mut forged = stored.clone();
+        let number = forged.pointer_mut(place).expect(place);
+        *number = match number.as_u64() {
+            Some(count) => count.saturating_add_signed(more as i64).into(),
+            None => (number.as_f64().expect(place) + more).into(),
+        };
+        forged
+    };
+    for (stored, place, more) in [
+        (&plain, "/start/position", 1e-9),
+        (&plain, "/pieces/1/begin/high", 1e-9),
+        (&plain, "/pieces/1/segment/start/rate", 1e-12),
+        (&plain, "/pieces/1/segment/end/position", 1e-12),
+        (&plain, "/pieces/0/segment/even/0", 1e-3),
+        (&plain, "/pieces/0/segment/odd/0", 1e-3),
+        (&plain, "/now/high", 1e3),
+        (&plain, "/now/low", 1e-3),
+        (&plain, "/index", 1.0),
+        (&plain, "/slack", 1e-3),
+        (&plain, "/direction", 0.5),
+        (&plain, "/advances", -1.0),
+        (&plain, "/limits/upper", -9.5),
+        (&plain, "/orbit/period/high", 1e-9),
+        (&recording, "/extremes/lowest", 1.0),
+        (&recording, "/extremes/highest", 10.0),
+    ] {
+        let forged = forged(stored, place, more);
+        assert!(!sound(forged), "{place} in {stored:#}");
+    }
+    // Where it does not turn, with the period that goes with it.
+    let turn = forged(&plain, "/orbit/second_turn/high", -0.1);
+    assert!(!sound(forged(&turn, "/orbit/period/high", -0.2)));
+}
+
 /// Strides of 8 nodes against substeps of 16, each within ten tolerances of the
 /// truth.
 #[test]

@@ -23,17 +23,6 @@ pub struct Component {
     pub host: Host,
 }
 
-impl Component {
-    /// Ends a call in which there was a panic.
-    #[cold]
-    fn give_up(&mut self, function: &str) -> fmi2Status {
-        self.instance.give_up();
-        let severity = Severity::Fatal;
-        let text = "an internal error; free this instance and report the fault".into();
-        self.host.refuse(function, Fault { severity, text })
-    }
-}
-
 /// The host's side: who is told what.
 pub struct Host {
     /// Copied by value: hosts may free or reuse the structure that they passed.
@@ -132,6 +121,38 @@ impl Host {
     }
 }
 
+/// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
+fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
+        Err(Fault {
+            severity: Severity::Fatal,
+            text: "an internal error; free this instance, if there is one, and report the fault"
+                .into(),
+        })
+    })
+}
+
+/// The component of an instance that `make` makes, or null: the one way into an
+/// instance's life. No panic leaves it.
+pub fn instantiated(host: Host, make: impl FnOnce() -> Result<Instance, Fault>) -> fmi2Component {
+    match contained(make) {
+        Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
+        Err(fault) => {
+            host.refuse("fmi2Instantiate", fault);
+            std::ptr::null_mut()
+        }
+    }
+}
+
+/// Frees what a host has had, and the way out. No panic leaves it.
+pub fn free<T>(owned: Box<T>) {
+    // Nobody is left who could be told.
+    let _ = contained(|| {
+        drop(owned);
+        Ok(())
+    });
+}
+
 /// Runs `body` on the component behind the pointer, if the phase permits the
 /// call: the one way from C into the slave. No panic leaves it.
 pub fn guarded(
@@ -149,11 +170,15 @@ pub fn guarded(
     if let Err(fault) = component.instance.check(call) {
         return component.host.refuse(function, fault);
     }
-    match catch_unwind(AssertUnwindSafe(|| body(component))) {
-        Ok(Ok(None)) => fmi2Status_fmi2OK,
-        Ok(Ok(Some(event))) => component.host.announce(function, event),
-        Ok(Err(fault)) => component.host.refuse(function, fault),
-        Err(_) => component.give_up(function),
+    match contained(|| body(component)) {
+        Ok(None) => fmi2Status_fmi2OK,
+        Ok(Some(event)) => component.host.announce(function, event),
+        Err(fault) => {
+            if fault.severity == Severity::Fatal {
+                component.instance.give_up();
+            }
+            component.host.refuse(function, fault)
+        }
     }
 }
 
@@ -163,10 +188,7 @@ mod tests {
     use crate::abi::*;
     use crate::slave::Interface;
 
-    /// A call that panics is answered with Fatal, and so is every call after it;
-    /// the instance can still be freed.
-    #[test]
-    fn a_panic_does_not_leave_the_library() {
+    fn host() -> Host {
         let callbacks = fmi2CallbackFunctions {
             logger: None,
             allocateMemory: None,
@@ -174,9 +196,14 @@ mod tests {
             stepFinished: None,
             componentEnvironment: std::ptr::null_mut(),
         };
-        let instance = Instance::of(Interface::CoSimulation);
-        let host = Host::new(callbacks, c"actuator", true);
-        let component: fmi2Component = Box::into_raw(Box::new(Component { instance, host })).cast();
+        Host::new(callbacks, c"actuator", true)
+    }
+
+    /// A call that panics is answered with Fatal, and so is every call after it;
+    /// the instance can still be freed.
+    #[test]
+    fn a_panic_does_not_leave_the_library() {
+        let component = instantiated(host(), || Ok(Instance::of(Interface::CoSimulation)));
         let status = guarded(
             component,
             "fmi2SetupExperiment",
@@ -201,5 +228,26 @@ mod tests {
             fmi2FreeInstance(component);
         }
         assert!(state.is_null());
+    }
+
+    /// What panics while it is made is a fatal fault, and no component.
+    #[test]
+    fn a_panic_in_making_an_instance_leaves_none() {
+        let panics = || -> Result<Instance, Fault> { panic!("what the test asks for") };
+        let fault = contained(panics).expect_err("a panic");
+        assert_eq!(fault.severity, Severity::Fatal);
+        assert!(fault.text.contains("internal error"), "{}", fault.text);
+        assert!(instantiated(host(), panics).is_null());
+    }
+
+    #[test]
+    fn a_panic_in_freeing_goes_no_further() {
+        struct Stubborn;
+        impl Drop for Stubborn {
+            fn drop(&mut self) {
+                panic!("what the test asks for");
+            }
+        }
+        free(Box::new(Stubborn));
     }
 }

@@ -1,6 +1,6 @@
 //! The C functions of FMI 2.0 (`fmi2Functions.h`): the only room with unsafe
 //! code. Each function turns pointers into slices and delegates to one method
-//! of the slave, inside the guard of [`component`].
+//! of the slave, inside the guard of `component`.
 //!
 //! Safety of all of them: the host owes what the standard says, that is,
 //! components from `fmi2Instantiate` that have not been freed and are used by
@@ -32,7 +32,7 @@ use libc::c_char;
 
 use crate::description::GUID;
 use crate::slave::{Call, Fault, Instance, Interface, Type};
-use component::{Component, Host, guarded};
+use component::{Component, Host, free, guarded, instantiated};
 pub use conformance::EXPORTED_NAMES;
 pub use exchange::*;
 use pointers::{slice, slice_mut, text};
@@ -93,7 +93,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
     // SAFETY: see the head of this file.
     let name = unsafe { text(instanceName, "the instance name") };
     let host = Host::new(callbacks, name.as_ref().unwrap_or(&c""), loggingOn != 0);
-    let accept = || {
+    instantiated(host, || {
         if name?.is_empty() {
             return Err(Fault::error("the instance name is empty".into()));
         }
@@ -113,25 +113,15 @@ pub unsafe extern "C" fn fmi2Instantiate(
                 "the GUID is not {GUID}: binary and modelDescription.xml do not belong together"
             )));
         }
-        Ok(interface)
-    };
-    match accept() {
-        Ok(interface) => {
-            let instance = Instance::of(interface);
-            Box::into_raw(Box::new(Component { instance, host })).cast()
-        }
-        Err(fault) => {
-            host.refuse("fmi2Instantiate", fault);
-            std::ptr::null_mut()
-        }
-    }
+        Ok(Instance::of(interface))
+    })
 }
 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
     if !c.is_null() {
         // SAFETY: made by `fmi2Instantiate`, and freed once (see the head).
-        drop(unsafe { Box::from_raw(c.cast::<Component>()) });
+        free(unsafe { Box::from_raw(c.cast::<Component>()) });
     }
 }
 

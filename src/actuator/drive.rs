@@ -13,7 +13,7 @@ use crate::solver::number::Number;
 /// Derivatives of an input that are taken into account: orders 1 to 4.
 pub const HIGHEST_DERIVATIVE: usize = 4;
 
-/// An input from the moment at which it was set: Σ term[k] sᵏ.
+/// An input from the moment at which it was set: Σ `term[k]` sᵏ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     term: [f64; HIGHEST_DERIVATIVE + 1],

@@ -54,10 +54,8 @@ impl Exchange {
     /// Whether the numbers can be those of a motion.
     pub(super) fn is_sound(&self) -> bool {
         let State { position, rate } = self.state;
-        let collapsed = self.collapse.map_or(0.0, |collapse| collapse.time.value());
-        [self.time.value(), position, rate, collapsed]
-            .into_iter()
-            .all(f64::is_finite)
+        let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
+        position.is_finite() && rate.is_finite() && self.time.is_sound() && collapsed.is_sound()
     }
 
     /// The limit that lies less than `tolerance`, relative to it, before the

@@ -196,7 +196,7 @@ impl Instance {
         Ok((kept != wanted).then(|| Event {
             warning: true,
             text: format!(
-                "the tolerance {wanted} is outside {smallest} to {largest}; {kept} is used"
+                "the tolerance {wanted:e} is outside {smallest:e} to {largest:e}; {kept:e} is used"
             ),
         }))
     }

@@ -42,10 +42,14 @@ impl Run {
         }
     }
 
-    /// Whether the numbers can be those of a motion that has followed the scene.
-    pub(super) fn is_sound(&self) -> bool {
-        let collapsed = self.collapse.map_or(0.0, |collapse| collapse.time.value());
-        self.trajectory.is_sound() && self.time.value().is_finite() && collapsed.is_finite()
+    /// Whether the numbers fit together as those of a motion of the scene.
+    pub(super) fn is_sound(&self, scene: &Scene, tolerance: f64) -> bool {
+        let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
+        self.trajectory.is_sound()
+            && self.trajectory.keeps_to(scene.limits, tolerance)
+            && self.trajectory.extremes().is_some() == scene.record_extremes
+            && self.time.is_sound()
+            && collapsed.is_sound()
     }
 
     /// The present time of the model.

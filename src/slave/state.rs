@@ -1,9 +1,14 @@
 //! Saving an instance and going on from there, in this process or another.
 //!
 //! A saved instance is a row of bytes without pointers: everything that decides
-//! how the simulation goes on, down to the history of the integrator. Whatever
-//! the bytes, restoring them gives an instance that could have been saved, or
-//! an error.
+//! how the simulation goes on, down to the history of the integrator.
+//!
+//! Whatever the bytes, restoring them gives an error, or an instance that answers
+//! every call as any other does. Its numbers fit together: settings inside their
+//! limits, a phase that goes with the course, and a motion whose pieces join, with
+//! the present in one of them and between the limits of the stretch. That the
+//! pieces solve the equation of motion is not checked: bytes forged with care move
+//! the actuator as they say, until an input or a parameter changes.
 
 use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE};
 use crate::variables::{Access, VARIABLES};
@@ -58,7 +63,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Checks that an instance read from bytes could have come about by calls.
+    /// Checks that the numbers of an instance read from bytes fit together (see the
+    /// head of this file).
     fn check_soundness(&self) -> Result<(), String> {
         for variable in &VARIABLES {
             if let Access::Setting { get, .. } = variable.access {
@@ -89,7 +95,7 @@ impl Instance {
         }
         let sound = match &self.course {
             Course::Ahead => true,
-            Course::Run(run) => run.is_sound(),
+            Course::Run(run) => run.is_sound(&self.scene, self.experiment.tolerance),
             Course::Exchange(exchange) => exchange.is_sound(),
         };
         if !sound {

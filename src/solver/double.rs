@@ -26,6 +26,12 @@ impl Double {
     /// One.
     pub const ONE: Double = Double::new(1.0);
 
+    /// Whether it is finite, and its parts do not overlap.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        self.high.is_finite() && self.value() == self.high
+    }
+
     /// The number `value`, exactly.
     #[must_use]
     pub const fn new(value: f64) -> Double {

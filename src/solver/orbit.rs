@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::double::Double;
+use super::segment::ROUNDING;
 
 /// The motion between two turning points of an autonomous, reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -21,6 +22,18 @@ impl Orbit {
             second_turn,
             period: second_turn.sub(first_turn).scale(2.0),
         }
+    }
+
+    /// Whether the numbers can be those of an orbit.
+    pub fn is_sound(&self) -> bool {
+        let [first, second] = self.turns();
+        second.since(first) > 0.0 && self.period == Orbit::between(first, second).period
+    }
+
+    /// Whether `time` lies between the turning points, to rounding.
+    pub fn holds(&self, time: Double) -> bool {
+        let rounding = ROUNDING * self.period.high;
+        time.since(self.first_turn) >= -rounding && self.second_turn.since(time) >= -rounding
     }
 
     /// Both turning points, the earlier one first.

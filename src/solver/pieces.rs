@@ -108,14 +108,19 @@ impl TryFrom<Vec<Piece>> for Pieces {
         if list.len() > CAPACITY {
             return Err("more pieces than a trajectory keeps");
         }
-        let mut end = Double::ZERO;
+        let mut before: Option<Piece> = None;
         for piece in &mut list {
-            let follows = piece.begin.since(end).abs() <= 1e-9 * piece.segment.length();
+            let follows = match before {
+                Some(last) => {
+                    piece.begin == last.end() && piece.segment.begins_in(last.segment.end())
+                }
+                None => piece.begin == Double::ZERO,
+            };
             if !(piece.segment.is_sound() && follows) {
                 return Err("a piece of the trajectory is damaged");
             }
             piece.segment.expand();
-            end = piece.end();
+            before = Some(*piece);
         }
         list.reserve_exact(CAPACITY - list.len());
         Ok(Pieces { held: list })

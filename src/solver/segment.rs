@@ -16,6 +16,9 @@ const TERMS: usize = 2 * PAIRS + 2;
 /// Parts of a segment in each of which the motion turns at most once.
 pub const PARTS: usize = 32;
 
+/// Numbers that differ by more than this part do not differ by rounding.
+pub const ROUNDING: f64 = 1e-6;
+
 /// x(t) over one substep, u = t/half − 1 ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Segment {
@@ -74,13 +77,36 @@ impl Segment {
         self.end
     }
 
-    /// Whether the numbers can be those of a substep.
+    /// Whether the numbers can be those of a substep: from its start f, whatever it
+    /// follows, leads to its end.
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let State { position, rate } = self.start;
-        let numbers = [position, rate, self.end.position, self.end.rate];
-        let all = numbers.iter().chain(&self.even).chain(&self.odd);
-        self.half > 0.0 && self.half.is_finite() && all.copied().all(f64::is_finite)
+        let drift = self.length() * rate;
+        let [mean, tilt] = [self.even[0], self.odd[0] / 3.0];
+        let moved = self.end.position - position - drift - 2.0 * (mean - tilt);
+        let turned = self.half * (self.end.rate - rate) - 2.0 * mean;
+        let size = position.abs() + drift.abs() + self.bend();
+        self.half > 0.0
+            && size.is_finite()
+            && moved.abs() <= ROUNDING * size
+            && turned.abs() <= ROUNDING * (drift.abs() + self.bend())
+    }
+
+    /// Whether it begins in this state, bit for bit as the one before ends.
+    pub fn begins_in(&self, state: State) -> bool {
+        self.start == state
+    }
+
+    /// Whether the motion turns at `offset`, as far as that can be told.
+    pub fn turns_at(&self, offset: f64) -> bool {
+        self.half * self.rate(offset).abs() <= ROUNDING * self.bend()
+    }
+
+    /// How far f can bend the motion, as a length.
+    fn bend(&self) -> f64 {
+        let all = self.even.iter().chain(&self.odd);
+        all.map(|coefficient| coefficient.abs()).sum()
     }
 
     /// Works out the powers of u, which [`Segment::position`] and

@@ -106,8 +106,6 @@ struct Stage {
     states: [fmi2FMUstate; SLOTS as usize],
     /// Whether the log was left as it was at first.
     logging: [bool; 2],
-    /// Whether bytes of unknown contents were restored.
-    damaged: bool,
 }
 
 impl Drop for Stage {
@@ -124,7 +122,6 @@ impl Stage {
             hosts: [0, 1].map(new),
             states: [null_mut(); SLOTS as usize],
             logging: [true; 2],
-            damaged: false,
         }
     }
 
@@ -190,9 +187,7 @@ impl Stage {
                 let numbers = filled(references.len(), |to| unsafe {
                     fmi2GetReal(c, references.as_ptr(), references.len(), to)
                 })?;
-                let number = self.damaged
-                    || numbers.0 != OK
-                    || numbers.1.iter().all(|value| !value.is_nan());
+                let number = numbers.0 != OK || numbers.1.iter().all(|value| !value.is_nan());
                 demand(number, "a value is no number")?;
                 numbers.0
             }
@@ -284,7 +279,6 @@ impl Stage {
                 bytes.truncate(length.map_or(bytes.len(), usize::from));
                 if *sealed && bytes.len() > CONTENTS {
                     seal(&mut bytes);
-                    self.damaged = true;
                 }
                 let (data, state) = (bytes.as_ptr().cast(), &mut self.states[slot(*to)]);
                 unsafe { fmi2DeSerializeFMUstate(c, data, bytes.len(), state) }

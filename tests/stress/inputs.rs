@@ -9,14 +9,7 @@ use super::*;
 /// units of the stretch; the rate counts in units of 1/√(c+2).
 fn jumps(seed: u64, count: u32, tolerance: f64, choose: impl Fn(&mut Random) -> Load) -> f64 {
     let mut random = Random(seed);
-    let actuator = Actuator {
-        aspect: 10_f64.powf(random.between(-1.0, 6.0)),
-        surface: [
-            random.between(0.0, 0.2),
-            random.between(0.0, 0.2),
-            random.between(0.1, 1.0),
-        ],
-    };
+    let actuator = random.actuator([-1.0, 6.0], 0.2, 0.1);
     let unit = (actuator.aspect + 2.0).sqrt();
     let mut trajectory = from_rest(tolerance);
     let mut time = Double::ZERO;

@@ -40,14 +40,7 @@ fn states(level: Level, motion: &Motion, step: f64) -> Vec<State> {
 fn all_levels_give_the_same_motion() {
     let mut random = Random(8);
     for case in 0..20 {
-        let actuator = Actuator {
-            aspect: 10_f64.powf(random.between(-1.0, 6.0)),
-            surface: [
-                random.between(0.0, 0.2),
-                random.between(0.0, 0.2),
-                random.between(0.05, 1.0),
-            ],
-        };
+        let actuator = random.actuator([-1.0, 6.0], 0.2, 0.05);
         let unit = (actuator.aspect + 2.0).sqrt();
         let mut load = Load::constant(random.between(0.0, 0.6), random.between(-0.3, 0.3));
         if case % 2 == 1 {

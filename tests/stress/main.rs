@@ -113,6 +113,19 @@ impl Random {
         from + (to - from) * (self.bits() >> 11) as f64 * 2_f64.powi(-53)
     }
 
+    /// An actuator with c of 10 to these powers, γ_s and τ_s below `surface` and
+    /// E_s from `elasticity` to 1.
+    fn actuator(&mut self, powers: [f64; 2], surface: f64, elasticity: f64) -> Actuator {
+        Actuator {
+            aspect: 10_f64.powf(self.between(powers[0], powers[1])),
+            surface: [
+                self.between(0.0, surface),
+                self.between(0.0, surface),
+                self.between(elasticity, 1.0),
+            ],
+        }
+    }
+
     /// One of these.
     fn of<T: Copy>(&mut self, these: &[T]) -> T {
         these[(self.bits() % these.len() as u64) as usize]

@@ -96,14 +96,7 @@ fn random_actuators_move_as_the_independent_integrator_says() {
     let mut random = Random(1);
     let count = if long() { 20_000 } else { 400 };
     for case in 0..count {
-        let actuator = Actuator {
-            aspect: 10_f64.powf(random.between(-1.0, 8.0)),
-            surface: [
-                random.between(0.0, 0.5),
-                random.between(0.0, 0.5),
-                random.between(0.05, 1.0),
-            ],
-        };
+        let actuator = random.actuator([-1.0, 8.0], 0.5, 0.05);
         let unit = unit(&actuator);
         let mut load = Load::constant(random.between(0.0, 0.6), random.between(-2.0, 0.5));
         if case % 2 == 1 {

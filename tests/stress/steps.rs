@@ -94,14 +94,7 @@ fn many_small_steps_end_where_one_step_ends() {
 fn a_motion_run_back_returns_to_its_start() {
     let mut random = Random(5);
     for _ in 0..50 {
-        let actuator = Actuator {
-            aspect: 10_f64.powf(random.between(-2.0, 6.0)),
-            surface: [
-                random.between(0.0, 0.2),
-                random.between(0.0, 0.2),
-                random.between(0.05, 1.0),
-            ],
-        };
+        let actuator = random.actuator([-2.0, 6.0], 0.2, 0.05);
         let time = random.between(1.0, 100.0) * (actuator.aspect + 2.0).sqrt();
         let load = Load::constant(random.between(0.0, 0.6), random.between(-1.0, 0.5));
         let motion = motion(&actuator, &load);

@@ -20,6 +20,7 @@ use super::{Equation, State};
 
 mod extension;
 mod present;
+mod soundness;
 
 /// Substeps that one call may take: about a second of work.
 const MOST_SUBSTEPS: u32 = 2_000_000;
@@ -162,40 +163,6 @@ impl Trajectory {
         self.orbit = None;
         self.stop = None;
         self.at_rest = false;
-    }
-
-    /// Whether the numbers can be those of a motion that has been followed: to
-    /// be checked where they do not come from this process.
-    #[must_use]
-    pub fn is_sound(&self) -> bool {
-        let instants = [self.origin, self.now, self.recorded];
-        let finite = |time: &Double| time.value().is_finite();
-        let turns = self.orbit.iter().flat_map(Orbit::turns);
-        let stop = self.stop.map(|(_, at)| at);
-        let inside = |time: &Double| {
-            finite(time) && time.since(Double::ZERO) >= 0.0 && time.since(self.end()) <= 0.0
-        };
-        let State { position, rate } = self.start;
-        let length = self.next_length.unwrap_or(1.0);
-        let f = self.last_f.unwrap_or(0.0);
-        position.is_finite()
-            && rate.is_finite()
-            && f.is_finite()
-            && self.control.is_sound()
-            && self.limits.are_sound()
-            && instants.iter().all(finite)
-            && inside(&self.now)
-            && self.index < self.pieces.count().max(1)
-            && self.pieces.find(self.now, self.index) == self.index
-            && turns
-                .chain(self.first_turn)
-                .chain(stop)
-                .all(|time| inside(&time))
-            && self.direction.abs() == 1.0
-            && (0.0..=self.end().value()).contains(&self.slack)
-            && length > 0.0
-            && length.is_finite()
-            && self.strides.are_sound()
     }
 
     /// Follows the motion for the time `step` > 0. The `equation` must be the
