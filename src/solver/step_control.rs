@@ -12,7 +12,10 @@ const ORDER_INSIDE: f64 = 18.0;
 /// stages are solved: unlike the error between the nodes, what is left there
 /// adds up from substep to substep (1e3-fold in 2000 units of time of a
 /// resonant motion).
-const SETTLED: f64 = 5e-5;
+const SETTLED: f64 = 2e-4;
+
+/// The same at a tight tolerance, where a sweep more costs little.
+const SETTLED_TIGHTLY: f64 = 5e-5;
 
 /// Errors of this part of the position, one in each step, are not seen beside the
 /// rounding of 1e6 steps.
@@ -82,7 +85,12 @@ impl StepControl {
     /// How closely the stages of a substep have to be solved.
     #[must_use]
     pub fn settled(&self) -> f64 {
-        SETTLED * self.tolerance
+        let share = if self.is_loose() {
+            SETTLED
+        } else {
+            SETTLED_TIGHTLY
+        };
+        share * self.tolerance
     }
 
     /// The same of a substep that is a `part` of the motion's time scale, relative to
