@@ -131,8 +131,8 @@ impl Strides {
         dispatch!(level, simd => self.by_eight(simd, equation, control, way))
     }
 
-    /// The same with 16 nodes. Strides of both kinds must not follow each other
-    /// without a restart.
+    /// The same with 16 nodes. Either kind may follow the other: both guess by
+    /// Legendre series, of which one is the shorter.
     pub fn go_finely<E: Equation>(
         &mut self,
         level: Level,

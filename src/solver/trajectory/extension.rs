@@ -87,8 +87,14 @@ impl Trajectory {
             clear: self.clear(),
             budget: *budget,
         };
+        // A single one takes longer with 16 nodes.
+        let single = || {
+            let local = equation.at(way.begin);
+            target.since(begin) < local.time_scale(way.state)
+        };
+        let few = control.is_loose() || self.restless && single();
         let (level, strides) = (self.level, &mut self.strides);
-        let end = if self.restless || control.is_loose() {
+        let end = if few {
             strides.go(level, equation, control, &mut way)
         } else {
             strides.go_finely(level, equation, control, &mut way)
