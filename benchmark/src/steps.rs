@@ -62,6 +62,31 @@ impl Plan<'_> {
         }
     }
 
+    /// Nanoseconds for each call; making a fresh instance for each run is not timed.
+    fn time<H>(
+        &self,
+        least: Duration,
+        fresh: impl Fn() -> H,
+        each: impl Fn(&H, u64),
+    ) -> Option<f64> {
+        let batch = least / BATCHES as u32;
+        let one = || {
+            let (mut passed, mut runs) = (Duration::ZERO, 0_u64);
+            while passed < batch {
+                let host = fresh();
+                let begin = Instant::now();
+                for call in 0..self.calls {
+                    each(&host, call);
+                }
+                passed += begin.elapsed();
+                runs += 1;
+            }
+            1e9 * passed.as_secs_f64() / (runs * self.calls) as f64
+        };
+        one();
+        Some(median([(); BATCHES].map(|()| one())))
+    }
+
     /// The index of the reference at the end of a call, if it has one.
     fn compared(&self, call: u64) -> Option<usize> {
         let time = (call + 1) as f64 * self.step;
@@ -110,18 +135,14 @@ pub fn run(case: &Case, least: Duration) {
 pub fn van_der_pol(case: &Case, library: &str, least: Duration) {
     let library = VanDerPol::load(library);
     for step in STEPS {
-        let Plan { calls, .. } = Plan::new(case, step);
-        let start = || library.start();
-        let read = nanoseconds(least, calls, start, |oscillator| {
-            for call in 0..calls {
-                oscillator.step(call as f64 * step, step);
-                black_box(oscillator.displacement());
-            }
+        let plan = Plan::new(case, step);
+        let fresh = || library.start();
+        let read = plan.time(least, fresh, |oscillator, call| {
+            oscillator.step(call as f64 * step, step);
+            black_box(oscillator.displacement());
         });
-        let alone = nanoseconds(least, calls, start, |oscillator| {
-            for call in 0..calls {
-                oscillator.step(call as f64 * step, step);
-            }
+        let alone = plan.time(least, fresh, |oscillator, call| {
+            oscillator.step(call as f64 * step, step);
         });
         for (inputs, nanoseconds) in [("unchanged", read), (STEP_ALONE, alone)] {
             Row {
@@ -139,32 +160,10 @@ pub fn van_der_pol(case: &Case, library: &str, least: Duration) {
     }
 }
 
-/// Nanoseconds for each call; making a fresh instance for each run is not timed.
-fn nanoseconds<H>(
-    least: Duration,
-    calls: u64,
-    fresh: impl Fn() -> H,
-    drive: impl Fn(&mut H),
-) -> Option<f64> {
-    let batch = least / BATCHES as u32;
-    let one = || {
-        let (mut passed, mut runs) = (Duration::ZERO, 0_u64);
-        while passed < batch {
-            let mut host = fresh();
-            let begin = Instant::now();
-            drive(&mut host);
-            passed += begin.elapsed();
-            runs += 1;
-        }
-        1e9 * passed.as_secs_f64() / (runs * calls) as f64
-    };
-    one();
-    Some(median([(); BATCHES].map(|()| one())))
-}
-
 fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
     let Plan { case, step, .. } = *plan;
-    let host = Host::new(case, tolerance, true);
+    let fresh = || Host::new(case, tolerance, true);
+    let host = fresh();
     let mut error = 0.0_f64;
     for call in 0..plan.calls {
         host.step(call as f64 * step, step);
@@ -183,17 +182,10 @@ fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
         note: String::new(),
     };
     if error <= 10.0 * tolerance + 1e-12 {
-        row.nanoseconds = nanoseconds(
-            least,
-            plan.calls,
-            || Host::new(case, tolerance, true),
-            |host| {
-                for call in 0..plan.calls {
-                    host.step(call as f64 * step, step);
-                    black_box(host.stretch());
-                }
-            },
-        );
+        row.nanoseconds = plan.time(least, fresh, |host, call| {
+            host.step(call as f64 * step, step);
+            black_box(host.stretch());
+        });
     } else {
         row.note = "not timed: error above 10 tolerances".into();
         row.print();
@@ -201,31 +193,17 @@ fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
     }
     row.print();
     row.inputs = STEP_ALONE;
-    row.nanoseconds = nanoseconds(
-        least,
-        plan.calls,
-        || Host::new(case, tolerance, true),
-        |host| {
-            for call in 0..plan.calls {
-                host.step(call as f64 * step, step);
-            }
-        },
-    );
+    row.nanoseconds = plan.time(least, fresh, |host, call| {
+        host.step(call as f64 * step, step)
+    });
     row.print();
     row.inputs = SET_AGAIN;
     let same = [case.voltage, 0.0, 0.0, 0.0];
-    row.nanoseconds = nanoseconds(
-        least,
-        plan.calls,
-        || Host::new(case, tolerance, true),
-        |host| {
-            for call in 0..plan.calls {
-                host.set(black_box(&same), 0);
-                host.step(call as f64 * step, step);
-                black_box(host.stretch());
-            }
-        },
-    );
+    row.nanoseconds = plan.time(least, fresh, |host, call| {
+        host.set(black_box(&same), 0);
+        host.step(call as f64 * step, step);
+        black_box(host.stretch());
+    });
     row.print();
 }
 
@@ -236,7 +214,8 @@ fn changing(plan: &Plan, name: &str, order: usize, least: Duration) {
         .collect();
     let independent = independent(plan, &inputs, order);
     for tolerance in TOLERANCES {
-        let host = Host::new(case, tolerance, false);
+        let fresh = || Host::new(case, tolerance, false);
+        let host = fresh();
         let (mut error, mut hold_error, mut compared) = (0.0_f64, 0.0_f64, 0);
         for (call, input) in inputs.iter().enumerate() {
             host.set(input, order);
@@ -261,35 +240,21 @@ fn changing(plan: &Plan, name: &str, order: usize, least: Duration) {
         };
         // 1e-12: what is left of the independent answer, restarted at each step.
         if error <= ALLOWED * tolerance + 1e-12 {
-            row.nanoseconds = nanoseconds(
-                least,
-                plan.calls,
-                || Host::new(case, tolerance, false),
-                |host| {
-                    for (call, input) in inputs.iter().enumerate() {
-                        host.set(input, order);
-                        host.step(call as f64 * step, step);
-                        black_box(host.stretch());
-                    }
-                },
-            );
+            row.nanoseconds = plan.time(least, fresh, |host, call| {
+                host.set(&inputs[call as usize], order);
+                host.step(call as f64 * step, step);
+                black_box(host.stretch());
+            });
         } else {
             row.note = "not timed: error above 1000 tolerances".into();
         }
         row.print();
         if order == 0 && row.nanoseconds.is_some() {
             row.inputs = HELD_ALONE;
-            row.nanoseconds = nanoseconds(
-                least,
-                plan.calls,
-                || Host::new(case, tolerance, false),
-                |host| {
-                    for (call, input) in inputs.iter().enumerate() {
-                        host.set(input, order);
-                        host.step(call as f64 * step, step);
-                    }
-                },
-            );
+            row.nanoseconds = plan.time(least, fresh, |host, call| {
+                host.set(&inputs[call as usize], order);
+                host.step(call as f64 * step, step);
+            });
             row.print();
         }
     }

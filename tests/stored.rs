@@ -1,0 +1,104 @@
+//! Motions that are stored, and stored bytes that are none.
+
+use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
+
+/// φ = 0.6, S = 0.5.
+fn constant() -> Scene {
+    let mut scene = Scene::at_start();
+    scene.parameters.surface_energy = 0.05;
+    scene.parameters.surface_tension = 0.05;
+    scene.parameters.surface_elasticity = 0.2;
+    scene.drive.voltage.set_value(0.6);
+    scene.drive.prestress.set_value(0.5);
+    scene
+}
+
+/// φ = 0.3 sin(0.1438 t).
+fn alternating() -> Scene {
+    let mut scene = constant();
+    scene.drive.voltage.set_value(0.0);
+    scene.drive.prestress.set_value(0.0);
+    scene.drive.harmonic.amplitude = 0.3;
+    scene.drive.harmonic.frequency = 0.1438;
+    scene
+}
+
+fn from_rest(tolerance: f64) -> Trajectory {
+    let Scene { start, limits, .. } = constant();
+    Trajectory::new(start, Double::ZERO, limits, tolerance)
+}
+
+fn advance(trajectory: &mut Trajectory, motion: &Scene, step: f64) {
+    assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
+}
+
+/// A stored motion goes on as if nothing had happened, bit for bit.
+#[test]
+fn a_stored_motion_goes_on_bit_for_bit() {
+    let cases = [constant(), alternating()];
+    for motion in &cases {
+        for (before, step) in [(0.0, 0.37), (3.3, 0.01), (77.7, 5.0), (1234.5, 0.37)] {
+            let mut trajectory = from_rest(1e-11);
+            if before > 0.0 {
+                advance(&mut trajectory, motion, before);
+            }
+            let stored = serde_json::to_string(&trajectory).expect("it can be stored");
+            let mut restored: Trajectory = serde_json::from_str(&stored).expect("it was stored");
+            assert!(restored.is_sound());
+            for _ in 0..100 {
+                assert_eq!(restored.state(), trajectory.state(), "after {before}");
+                advance(&mut trajectory, motion, step);
+                advance(&mut restored, motion, step);
+            }
+        }
+    }
+}
+
+/// Numbers that do not fit together as those of one motion are noticed.
+#[test]
+fn a_forged_motion_is_not_sound() {
+    let stored = |mut trajectory: Trajectory| {
+        advance(&mut trajectory, &constant(), 77.7);
+        serde_json::to_value(&trajectory).expect("it can be stored")
+    };
+    let plain = stored(from_rest(1e-11));
+    let recording = stored(from_rest(1e-11).recording_extremes());
+    let sound =
+        |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_sound());
+    assert!(sound(plain.clone()) && sound(recording.clone()));
+    let forged = |stored: &serde_json::Value, place: &str, more: f64| {
+        let mut forged = stored.clone();
+        let number = forged.pointer_mut(place).expect(place);
+        *number = match number.as_u64() {
+            Some(count) => count.saturating_add_signed(more as i64).into(),
+            None => (number.as_f64().expect(place) + more).into(),
+        };
+        forged
+    };
+    for (stored, place, more) in [
+        (&plain, "/start/position", 1e-9),
+        (&plain, "/pieces/1/begin/high", 1e-9),
+        (&plain, "/pieces/1/segment/start/rate", 1e-12),
+        (&plain, "/pieces/1/segment/end/position", 1e-12),
+        (&plain, "/pieces/0/segment/even/0", 1e-3),
+        (&plain, "/pieces/0/segment/odd/0", 1e-3),
+        (&plain, "/now/high", 1e3),
+        (&plain, "/now/low", 1e-3),
+        (&plain, "/index", 1.0),
+        (&plain, "/slack", 1e-3),
+        (&plain, "/direction", 0.5),
+        (&plain, "/advances", -1.0),
+        (&plain, "/limits/upper", -9.5),
+        (&plain, "/orbit/period/high", 1e-9),
+        (&recording, "/extremes/lowest", 1.0),
+        (&recording, "/extremes/highest", 10.0),
+    ] {
+        let forged = forged(stored, place, more);
+        assert!(!sound(forged), "{place} in {stored:#}");
+    }
+    // Where it does not turn, with the period that goes with it.
+    let turn = forged(&plain, "/orbit/second_turn/high", -0.1);
+    assert!(!sound(forged(&turn, "/orbit/period/high", -0.2)));
+}
