@@ -113,6 +113,7 @@ impl Harmonic {
 
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
+    #[inline(never)]
     pub(super) fn angle(&self, time: Double) -> f64 {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
         const TURN: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];

@@ -12,11 +12,11 @@
 
 use std::ops::RangeInclusive;
 
-use fearless_simd::Simd;
+use fearless_simd::{Level, Simd, dispatch, f64x2, f64x4, f64x8};
 
 use super::lanes::Lanes;
 use super::number::Number;
-use super::tables::{Columns, Tables};
+use super::tables::{Columns, GAUSS_4, GAUSS_8, GAUSS_16, Tables};
 use super::{LocalEquation, State};
 
 /// Sweeps after which an iteration that still moves is given up.
@@ -154,13 +154,46 @@ fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
     even + odd
 }
 
-/// Solves a substep.
-///
-/// # Errors
-/// [`Diverged`] where the iteration does not converge or leaves the finite
-/// numbers; a shorter substep will do.
+/// The methods, each solved with the instructions of a level in one function of
+/// its own, since each is some kilobytes a level.
+macro_rules! methods {
+    ($($(#[$about:meta])* $name:ident, $inner:ident: $pairs:literal, $register:ident, $tables:ident;)*) => {$(
+        $(#[$about])*
+        ///
+        /// # Errors
+        /// [`Diverged`] where the iteration does not converge or leaves the finite
+        /// numbers; a shorter substep will do.
+        #[inline(never)]
+        pub fn $name<L: LocalEquation>(
+            level: Level,
+            equation: &L,
+            task: &Task<$pairs>,
+        ) -> Result<Substep<$pairs>, Diverged> {
+            dispatch!(level, simd => $inner(simd, equation, task))
+        }
+
+        #[inline(always)]
+        fn $inner<S: Simd, L: LocalEquation>(
+            simd: S,
+            equation: &L,
+            task: &Task<$pairs>,
+        ) -> Result<Substep<$pairs>, Diverged> {
+            solve::<S, $register<S>, L, $pairs>(simd, &$tables, equation, task)
+        }
+    )*};
+}
+
+methods! {
+    /// Solves a substep with 4 nodes.
+    solve_by_4, by_4: 2, f64x2, GAUSS_4;
+    /// Solves a substep with 8 nodes.
+    solve_by_8, by_8: 4, f64x4, GAUSS_8;
+    /// Solves a substep with 16 nodes.
+    solve_by_16, by_16: 8, f64x8, GAUSS_16;
+}
+
 #[inline(always)]
-pub fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
+fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     simd: S,
     tables: &Tables<P>,
     equation: &L,

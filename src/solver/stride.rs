@@ -5,14 +5,12 @@
 //! order 16 there, 16 nodes order 32. The last stride ends at the communication
 //! point itself.
 
-use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
+use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
-use super::collocation::{Diverged, Guess, Series, Substep, Task, solve};
+use super::collocation::{Diverged, Guess, Series, Substep, Task, solve_by_8, solve_by_16};
 use super::double::Double;
-use super::lanes::Lanes;
 use super::step_control::{StepControl, Verdict};
-use super::tables::{GAUSS_8, GAUSS_16, Tables};
 use super::{Equation, LocalEquation, State};
 
 /// Node pairs of a stride at a loose tolerance.
@@ -128,7 +126,9 @@ impl Strides {
         control: StepControl,
         way: &mut Way,
     ) -> End {
-        dispatch!(level, simd => self.by_eight(simd, equation, control, way))
+        self.go_with(equation, control, way, |local, task| {
+            solve_by_8(level, local, task)
+        })
     }
 
     /// The same with 16 nodes. Either kind may follow the other: both guess by
@@ -140,39 +140,17 @@ impl Strides {
         control: StepControl,
         way: &mut Way,
     ) -> End {
-        dispatch!(level, simd => self.by_sixteen(simd, equation, control, way))
+        self.go_with(equation, control, way, |local, task| {
+            solve_by_16(level, local, task)
+        })
     }
 
-    #[inline(always)]
-    fn by_eight<S: Simd, E: Equation>(
+    fn go_with<E: Equation, const P: usize>(
         &mut self,
-        simd: S,
         equation: &E,
         control: StepControl,
         way: &mut Way,
-    ) -> End {
-        self.go_with::<S, f64x4<S>, E, PAIRS>(simd, &GAUSS_8, equation, control, way)
-    }
-
-    #[inline(always)]
-    fn by_sixteen<S: Simd, E: Equation>(
-        &mut self,
-        simd: S,
-        equation: &E,
-        control: StepControl,
-        way: &mut Way,
-    ) -> End {
-        self.go_with::<S, f64x8<S>, E, MOST_PAIRS>(simd, &GAUSS_16, equation, control, way)
-    }
-
-    #[inline(always)]
-    fn go_with<S: Simd, V: Lanes<S, P>, E: Equation, const P: usize>(
-        &mut self,
-        simd: S,
-        tables: &Tables<P>,
-        equation: &E,
-        control: StepControl,
-        way: &mut Way,
+        method: impl Fn(&E::Local, &Task<P>) -> Result<Substep<P>, Diverged>,
     ) -> End {
         loop {
             let rest = way.target.since(way.now);
@@ -189,17 +167,11 @@ impl Strides {
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;
             let length = share(rest, free);
-            let (substep, factor) = match self.solve::<S, V, E::Local, P>(
-                simd,
-                tables,
-                &local,
-                control,
-                way,
-                [length, wanted],
-            ) {
-                Ok(solved) => solved,
-                Err(end) => return end,
-            };
+            let (substep, factor) =
+                match self.solve(&local, control, way, [length, wanted], &method) {
+                    Ok(solved) => solved,
+                    Err(end) => return end,
+                };
             let (lowest, highest) = way.clear;
             let reach = substep.reach();
             if !(*reach.start() > lowest && *reach.end() < highest) {
@@ -230,15 +202,13 @@ impl Strides {
 
     /// Solves one stride of the given `length`, where `wanted` would do if more were
     /// asked for, or, where that is too long, a shorter one; returns by which factor the next one may be longer.
-    #[inline(always)]
-    fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
+    fn solve<L: LocalEquation, const P: usize>(
         &mut self,
-        simd: S,
-        tables: &Tables<P>,
         local: &L,
         control: StepControl,
         way: &mut Way,
         [mut length, wanted]: [f64; 2],
+        method: impl Fn(&L, &Task<P>) -> Result<Substep<P>, Diverged>,
     ) -> Result<(Substep<P>, f64), End> {
         let scale = way.state.position.abs();
         let shortest = SHORTEST * length;
@@ -265,7 +235,7 @@ impl Strides {
                 },
                 contraction: (self.contraction * length * length).min(1.0),
             };
-            let solved = solve::<S, V, L, P>(simd, tables, local, &task);
+            let solved = method(local, &task);
             let factor = match solved {
                 Ok(substep) => {
                     let error = end_error(&substep) / scale;

@@ -1,9 +1,7 @@
 //! The next piece of a motion.
 
-use fearless_simd::{Level, Simd, dispatch, f64x8};
-
 use super::Trajectory;
-use crate::solver::collocation::{self, Diverged, Guess, Substep, Task};
+use crate::solver::collocation::{Diverged, Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
 use crate::solver::hop::Hop;
@@ -13,7 +11,6 @@ use crate::solver::pieces::{CAPACITY, Piece};
 use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::step_control::Verdict;
 use crate::solver::stride::{End, Way};
-use crate::solver::tables::GAUSS_16;
 use crate::solver::{Equation, LocalEquation, State};
 
 /// First substep in units of the motion's time scale.
@@ -197,7 +194,7 @@ impl Trajectory {
                 },
                 contraction: 1.0,
             };
-            let solved = solve(self.level, local, &task);
+            let solved = solve_by_16(self.level, local, &task);
             let verdict = match &solved {
                 Ok(substep) if self.limits.are_left_behind_by(substep.nodes()) => {
                     Verdict::Reject(0.5)
@@ -249,20 +246,3 @@ impl Trajectory {
 /// substeps of 6 to 14: 5 to 18 times less, which leaves room for the rate,
 /// whose error is larger by the inverse of the motion's time scale.
 const NEGLECTED: f64 = 1000.0;
-
-fn solve<L: LocalEquation>(
-    level: Level,
-    equation: &L,
-    task: &Task<PAIRS>,
-) -> Result<Substep<PAIRS>, Diverged> {
-    dispatch!(level, simd => sixteen(simd, equation, task))
-}
-
-#[inline(always)]
-fn sixteen<S: Simd, L: LocalEquation>(
-    simd: S,
-    equation: &L,
-    task: &Task<PAIRS>,
-) -> Result<Substep<PAIRS>, Diverged> {
-    collocation::solve::<S, f64x8<S>, L, PAIRS>(simd, &GAUSS_16, equation, task)
-}
