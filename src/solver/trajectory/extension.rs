@@ -37,7 +37,8 @@ impl Trajectory {
         let hop = Hop {
             time: self.origin,
             state: self.start,
-            f: self.last_f,
+            // Taken, so that a guess that leads nowhere is not made again.
+            f: self.last_f.take(),
             length: step,
             clear: self.clear(),
         };
