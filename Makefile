@@ -97,6 +97,7 @@ test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED)
 test-platforms: fmu-all
 	$(call heading,Tests of the platforms)
 	@env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest tests/platforms
+	@$(PYTHON_IN_VENV) -m pytest tests/fmpy/test_archive.py
 
 stress: $(INSTALLED)
 	$(call heading,Stress tests)

@@ -315,8 +315,8 @@ impl LocalEquation for LocalUnfolded {
         self.motion.longest_substep()
     }
 
-    fn time_scale(&self, state: State) -> f64 {
-        self.motion.time_scale(state)
+    fn natural_frequency(&self, state: State) -> f64 {
+        self.motion.natural_frequency(state)
     }
 }
 
@@ -361,7 +361,7 @@ impl LocalEquation for LocalIdeal {
         self.0.longest_substep()
     }
 
-    fn time_scale(&self, state: State) -> f64 {
-        self.0.time_scale(state)
+    fn natural_frequency(&self, state: State) -> f64 {
+        self.0.natural_frequency(state)
     }
 }

@@ -131,9 +131,10 @@ impl LocalEquation for LocalMotion {
         2.0 * std::f64::consts::PI / self.drive.frequency()
     }
 
-    /// 1/√|∂λ''/∂λ| with the terms of the stiffness added up by size, since
-    /// their sum may vanish.
-    fn time_scale(&self, state: State) -> f64 {
+    /// √|∂λ''/∂λ| with the terms of the stiffness added up by size, since their sum
+    /// may vanish.
+    #[inline(always)]
+    fn natural_frequency(&self, state: State) -> f64 {
         let voltage = self.drive.largest_voltage();
         let square = state.position * state.position;
         let Coefficients {
@@ -142,13 +143,25 @@ impl LocalEquation for LocalMotion {
             cubic,
             quintic,
         } = self.coefficients;
-        let inverse = 1.0 / square.powi(3);
-        let stiffness = 5.0 * inverse
-            + linear.abs()
-            + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic);
-        let mass = inertia + 2.0 * inverse;
-        (mass / stiffness).sqrt()
+        // Both times λ⁶.
+        let sixth = square * square * square;
+        let stiffness = 5.0
+            + sixth
+                * (linear.abs()
+                    + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic));
+        let mass = inertia * sixth + 2.0;
+        root_of_quotient(stiffness, mass)
     }
+}
+
+/// √(a/b) of positive numbers, to 7 %. The bits of a number are its logarithm, linear
+/// between powers of 2: short steps would wait for a true quotient and root longer
+/// than for f.
+#[inline(always)]
+fn root_of_quotient(a: f64, b: f64) -> f64 {
+    const ONE: i64 = 1.0_f64.to_bits() as i64;
+    let difference = a.to_bits() as i64 - b.to_bits() as i64;
+    f64::from_bits((ONE + (difference >> 1)) as u64)
 }
 
 #[cfg(test)]

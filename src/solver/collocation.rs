@@ -12,11 +12,11 @@
 
 use std::ops::RangeInclusive;
 
-use fearless_simd::{Level, Simd, dispatch, f64x2, f64x4, f64x8};
+use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
 use super::lanes::Lanes;
 use super::number::Number;
-use super::tables::{Columns, GAUSS_4, GAUSS_8, GAUSS_16, Tables};
+use super::tables::{Columns, GAUSS_8, GAUSS_16, Tables};
 use super::{LocalEquation, State};
 
 /// Sweeps after which an iteration that still moves is given up.
@@ -107,6 +107,19 @@ pub struct Closeness {
     pub rounding: f64,
 }
 
+impl Closeness {
+    /// Whether a sweep that changed the position by `change`, after one by `last_change`,
+    /// came close enough. The error left is the change times the rate of convergence,
+    /// which is given as two numbers that have that ratio.
+    #[inline(always)]
+    pub(super) fn is_reached(&self, change: f64, last_change: f64, rate: [f64; 2]) -> bool {
+        let [small, large] = rate;
+        change <= self.rounding
+            || change * small <= self.settled * (large - small)
+            || change >= last_change && change <= 16.0 * self.rounding
+    }
+}
+
 /// What a substep is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a, const P: usize> {
@@ -184,8 +197,6 @@ macro_rules! methods {
 }
 
 methods! {
-    /// Solves a substep with 4 nodes.
-    solve_by_4, by_4: 2, f64x2, GAUSS_4;
     /// Solves a substep with 8 nodes.
     solve_by_8, by_8: 4, f64x4, GAUSS_8;
     /// Solves a substep with 16 nodes.
@@ -202,7 +213,7 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     let &Task {
         start,
         length,
-        closeness: Closeness { settled, rounding },
+        closeness,
         ..
     } = task;
     let half = 0.5 * length;
@@ -277,18 +288,19 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
 
         if sweeps > 1 {
             let ratio = change / last_change;
-            // The error left is the change times the rate of convergence.
             let expected = if ratio.is_nan() {
                 task.contraction
             } else {
                 contraction.max(ratio)
             };
-            let done = change <= rounding
-                || change * expected <= settled * (1.0 - expected)
-                || (sweeps > 4 && change >= last_change && change <= 16.0 * rounding);
+            let done = closeness.is_reached(change, last_change, [expected, 1.0]);
             if sweeps == 2 && done {
                 // A change that is nothing but rounding tells nothing of it.
-                contraction = if change <= rounding { 0.0 } else { expected };
+                contraction = if change <= closeness.rounding {
+                    0.0
+                } else {
+                    expected
+                };
             } else if sweeps > 2 && !(done && ratio > 1.0) {
                 contraction = contraction.max(ratio);
             }

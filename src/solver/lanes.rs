@@ -1,6 +1,6 @@
 //! SIMD registers as numbers: one lane for each node.
 
-use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x2, f64x4, f64x8};
+use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4, f64x8};
 
 use super::number::Number;
 
@@ -126,7 +126,7 @@ macro_rules! lanes {
     )*};
 }
 
-lanes!(f64x2 of 2, f64x4 of 4, f64x8 of 8);
+lanes!(f64x4 of 4, f64x8 of 8);
 
 /// π in 33 bits, so that small multiples are exact, and the rest.
 const PI_HIGH: f64 = 3.141_592_653_468_251_2;

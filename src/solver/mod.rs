@@ -75,9 +75,9 @@ pub trait LocalEquation {
     /// alternates faster would be mistaken for a slow one.
     fn longest_substep(&self) -> f64;
 
-    /// The time in which the motion from here changes by itself, such as
-    /// √(1/|∂f/∂x|), to guess a first substep.
-    fn time_scale(&self, state: State) -> f64;
+    /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly. Its
+    /// inverse is the time scale of the motion.
+    fn natural_frequency(&self, state: State) -> f64;
 
     /// x'' in a state at the origin of time.
     #[inline(always)]

@@ -157,12 +157,12 @@ impl Strides {
             let local = equation.at(way.time());
             let longest = local.longest_substep();
             let few = P < MOST_PAIRS && way.now == Double::ZERO;
-            if few && longest.is_finite() && longest < local.time_scale(way.state) {
+            if few && longest.is_finite() && longest * local.natural_frequency(way.state) < 1.0 {
                 return End::Blocked;
             }
             let wanted = match self.length {
                 Some(length) => length,
-                None => local.time_scale(way.state),
+                None => 1.0 / local.natural_frequency(way.state),
             };
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;

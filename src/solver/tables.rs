@@ -58,14 +58,64 @@ pub struct Tables<const P: usize> {
     pub powers_from_odd: Columns<P>,
 }
 
-/// The tables of the method of 4 nodes.
-pub static GAUSS_4: Tables<2> = Tables::new();
-
 /// The tables of the method of 8 nodes.
 pub static GAUSS_8: Tables<4> = Tables::new();
 
 /// The tables of the method of 16 nodes.
 pub static GAUSS_16: Tables<8> = Tables::new();
+
+/// The tables of the method of 4 nodes ±u, unpaired: columns belong to the values of f in the nodes.
+#[derive(Debug)]
+pub struct Unpaired {
+    /// 1 + u_i.
+    pub place: [f64; 4],
+    /// The once integrated f.
+    pub once: Columns<4>,
+    /// The twice integrated f.
+    pub twice: Columns<4>,
+    /// Legendre coefficients a_0 to a_3.
+    pub series: Columns<4>,
+}
+
+/// The tables of the method of 4 nodes.
+pub static GAUSS_4: Unpaired = Unpaired::new(&Tables::new());
+
+impl Unpaired {
+    /// Row i and i + 2 belong to u_i and −u_i, columns likewise.
+    const fn new(pairs: &Tables<2>) -> Unpaired {
+        let mut unpaired = Unpaired {
+            place: [0.0; 4],
+            once: [[0.0; 4]; 4],
+            twice: [[0.0; 4]; 4],
+            series: [[0.0; 4]; 4],
+        };
+        let mut k = 0;
+        while k < 8 {
+            // Which half of the nodes the row and the column belong to.
+            let (i, row) = (k / 4, if k % 2 == 0 { 1.0 } else { -1.0 });
+            let at = i + if k % 2 == 0 { 0 } else { 2 };
+            let j = k / 2 % 2;
+            let u = row * pairs.node[i];
+            unpaired.place[at] = 1.0 + u;
+            let mut half = 0;
+            while half < 2 {
+                let column = if half == 0 { 1.0 } else { -1.0 };
+                let of = j + 2 * half;
+                unpaired.once[of][at] = pairs.mean[j]
+                    + row * pairs.once_from_sums[j][i]
+                    + column * pairs.once_from_differences[j][i];
+                unpaired.twice[of][at] = pairs.twice_from_sums[j][i]
+                    + u * pairs.mean[j]
+                    + column * (row * pairs.twice_from_differences[j][i] - pairs.tilt[j]);
+                unpaired.series[of][2 * i] = pairs.series_from_sums[j][i];
+                unpaired.series[of][2 * i + 1] = column * pairs.series_from_differences[j][i];
+                half += 1;
+            }
+            k += 1;
+        }
+        unpaired
+    }
+}
 
 impl<const P: usize> Tables<P> {
     /// Number of nodes.
@@ -255,9 +305,39 @@ mod tests {
     /// f(u) = uⁿ: every table against the integral done by hand.
     #[test]
     fn powers_up_to_the_number_of_nodes_are_integrated_exactly() {
-        check(&GAUSS_4);
         check(&GAUSS_8);
         check(&GAUSS_16);
+    }
+
+    /// The same for f(u) = (1 + u)ⁿ.
+    #[test]
+    fn unpaired_nodes_integrate_powers_exactly() {
+        let Unpaired {
+            place,
+            once,
+            twice,
+            series,
+        } = &GAUSS_4;
+        for n in 0..4 {
+            let values = place.map(|place| place.powi(n));
+            let apply =
+                |m: &Columns<4>, i: usize| -> f64 { (0..4).map(|j| m[j][i] * values[j]).sum() };
+            let (order, next) = (f64::from(n + 1), f64::from(n + 2));
+            for (i, place) in place.iter().enumerate() {
+                let by_hand = place.powi(n + 1) / order;
+                assert!((apply(once, i) - by_hand).abs() < 4e-15, "{n}");
+                assert!(
+                    (apply(twice, i) - by_hand * place / next).abs() < 4e-15,
+                    "{n}"
+                );
+            }
+            let end: f64 = (0..4).map(|k| apply(series, k)).sum();
+            assert!((end - 2.0_f64.powi(n)).abs() < 4e-15, "{n}");
+            assert!(
+                (apply(series, 0) - 2.0_f64.powi(n) / order).abs() < 4e-15,
+                "{n}"
+            );
+        }
     }
 
     fn check<const P: usize>(t: &Tables<P>) {

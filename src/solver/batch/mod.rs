@@ -177,7 +177,7 @@ impl<E: Equation> Course<'_, E> {
             } = self.motions.get(motion)?;
             self.next += 1;
             let local = equation.at(self.start);
-            let free = local.time_scale(*start);
+            let free = 1.0 / local.natural_frequency(*start);
             // An orbit is followed faster alone, a fast drive needs more nodes.
             if equation.is_autonomous() || local.longest_substep() < free {
                 continue;

@@ -88,7 +88,7 @@ impl Trajectory {
         // A single one takes longer with 16 nodes.
         let single = || {
             let local = equation.at(way.begin);
-            target.since(begin) < local.time_scale(way.state)
+            target.since(begin) * local.natural_frequency(way.state) < 1.0
         };
         let few = control.is_loose() || self.restless && single();
         let (level, strides) = (self.level, &mut self.strides);
@@ -174,7 +174,7 @@ impl Trajectory {
         let scale = state.position.abs();
         let free = match self.next_length {
             Some(length) => length,
-            None => FIRST_SUBSTEP * local.time_scale(state),
+            None => FIRST_SUBSTEP / local.natural_frequency(state),
         };
         let most = most.min(local.longest_substep());
         let shortest = (SHORTEST * free).min(0.5 * most);

@@ -146,13 +146,22 @@ impl Trajectory {
         self.restless = self.advances == 1;
         self.advances = 0;
         self.strides.restart();
-        self.stand_at(time, self.state());
+        // Without a piece it stands at its start.
+        if self.pieces.count() > 0 {
+            self.start = self.state();
+        }
+        self.forget(time);
     }
 
     /// Forgets the motion so far, which has come to `state` at `time`.
     fn stand_at(&mut self, time: Double, state: State) {
-        self.origin = time;
         self.start = state;
+        self.forget(time);
+    }
+
+    /// Forgets the motion up to `time`, at which it is at its start.
+    fn forget(&mut self, time: Double) {
+        self.origin = time;
         self.pieces.clear();
         self.index = 0;
         self.now = Double::ZERO;
