@@ -3,7 +3,7 @@
     python benchmark/bench.py PROGRAM [--rounds 5] [--milliseconds 10] [--cases abcde] [--records FOLDER]
 
 PROGRAM is the Rust side as make builds it. Each round goes through cases and methods in turn, so that a
-change of the machine's speed meets all of them; the medians over the rounds count. Each answer is held
+change of the machine's speed meets all of them; the fastest round counts. Each answer is held
 against the reference before it is timed.
 """
 
@@ -94,7 +94,7 @@ class Rivals:
 def settings(options, rivals: Rivals) -> dict[str, str]:
     compiled = rivals.heyoka.compile_seconds if rivals.heyoka else []
     return {
-        "rounds": f"{options.rounds}, SciPy {options.scipy_rounds}; methods in turn in each, medians over them",
+        "rounds": f"{options.rounds}, SciPy {options.scipy_rounds}; methods in turn in each, the fastest counts",
         "least time of a measurement": f"{options.milliseconds} ms",
         "error": "largest of stretch and rate at the times of the reference",
         "Rust side": "opt-level 3, lto fat, codegen-units 1; no target-cpu beyond the environment's RUSTFLAGS",
@@ -137,7 +137,7 @@ def main() -> None:
     facts |= settings(options, rivals)
 
     target = records.folder(facts, options.records)
-    best_free, best_steps = records.medians(free), records.medians(steps)
+    best_free, best_steps = records.fastest(free), records.fastest(steps)
     written = [
         records.write(target / "work_precision_raw.csv", facts, free),
         records.write(target / "work_precision.csv", facts, best_free),
@@ -150,7 +150,7 @@ def main() -> None:
         written.append(plots.co_simulation(best_steps, options.figures / "benchmark_co_simulation.png"))
         text += "\n" + ratios.step_table(best_steps)
     if skips:
-        best_skips = records.medians(skips)
+        best_skips = records.fastest(skips)
         written.append(records.write(target / "skips_raw.csv", facts, skips))
         written.append(records.write(target / "skips.csv", facts, best_skips))
         text += "\n" + ratios.skip_table(best_skips)
