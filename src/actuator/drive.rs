@@ -118,12 +118,10 @@ impl Harmonic {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
         const TURN: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
         const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
-        /// Numbers this large are whole: a small one that has been added is rounded.
-        const WHOLE: f64 = 6_755_399_441_055_744.0; // 1.5 · 2^52
         let angle = time.scale(self.frequency);
         let turns = angle.high * (1.0 / std::f64::consts::TAU);
         let rest = if turns.abs() < EXACT_TURNS {
-            let turns = (turns + WHOLE) - WHOLE;
+            let turns = turns.whole();
             (angle.high - turns * TURN[0]) - turns * TURN[1] + angle.low
         } else {
             let turns = turns.round();

@@ -59,12 +59,12 @@ macro_rules! lanes {
             #[inline(always)]
             fn sin(self) -> Self {
                 let number = |value: f64| self.same(value);
-                let halves = (self * number(std::f64::consts::FRAC_1_PI)).round_ties_even();
+                let halves = (self * number(std::f64::consts::FRAC_1_PI)).whole();
                 let rest = self - halves * number(PI_HIGH) - halves * number(PI_LOW);
                 let square = rest * rest;
-                // −1 for an odd number of half turns.
-                let odd = halves - (halves * number(0.5)).floor() * number(2.0);
-                let sign = number(1.0) - odd * number(2.0);
+                // −1 for an odd number of half turns, of which 1 or −1 is left.
+                let odd = halves - (halves * number(0.5)).whole() * number(2.0);
+                let sign = number(1.0) - odd * odd * number(2.0);
                 // Two sums in r⁴, since each operation of a single one waits for the last.
                 let fourth = square * square;
                 let mut sums = [number(SINE[0]), number(SINE[1])];
@@ -113,7 +113,7 @@ macro_rules! lanes {
             #[inline(always)]
             fn within_a_turn(self) -> Self {
                 let number = |value: f64| self.same(value);
-                let turns = (self * number(0.5 * std::f64::consts::FRAC_1_PI)).round_ties_even();
+                let turns = (self * number(0.5 * std::f64::consts::FRAC_1_PI)).whole();
                 self - turns * number(2.0 * PI_HIGH) - turns * number(2.0 * PI_LOW)
             }
 
