@@ -63,7 +63,11 @@ impl Hop {
             None => local.acceleration_from(self.state),
         };
         let closeness = control.closeness(scale, part);
-        let solved = solve(level, &local, self.state, self.length, f, closeness)?;
+        // Here, since a state that is handed over in two registers would be put down in two
+        // stores and read in one load, which waits for both: a quarter of the time of a hop.
+        let solved = dispatch!(level, simd => {
+            solve(simd, &local, self.state, self.length, f, closeness)
+        })?;
         let reach = solved.reach(self.state);
         let (lowest, highest) = self.clear;
         let good = *reach.start() > lowest
@@ -114,22 +118,8 @@ impl Solved {
 
 /// Solves a hop; `f` is what it is about at the begin. Nothing where the iteration
 /// does not converge.
-// Inlined, since a state that is handed over in two registers would be put down in two
-// stores and read in one load, which waits for both: a quarter of the time of a hop.
 #[inline(always)]
-fn solve<L: LocalEquation>(
-    level: Level,
-    equation: &L,
-    start: State,
-    length: f64,
-    f: f64,
-    closeness: Closeness,
-) -> Option<Solved> {
-    dispatch!(level, simd => solve_in(simd, equation, start, length, f, closeness))
-}
-
-#[inline(always)]
-fn solve_in<S: Simd, L: LocalEquation>(
+fn solve<S: Simd, L: LocalEquation>(
     simd: S,
     equation: &L,
     start: State,
@@ -245,7 +235,9 @@ mod tests {
             let length = part * time_scale;
             let closeness = StepControl::new(1e-13).closeness(1.0, 0.1);
             let f = equation.acceleration_from(state);
-            let solved = solve(Level::new(), &equation, state, length, f, closeness);
+            let solved = dispatch!(Level::new(), simd => {
+                solve(simd, &equation, state, length, f, closeness)
+            });
             let solved = solved.expect("it converges");
             let limits = Limits {
                 lower: 1e-3,
