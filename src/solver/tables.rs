@@ -81,37 +81,36 @@ pub struct Unpaired {
 pub static GAUSS_4: Unpaired = Unpaired::new(&Tables::new());
 
 impl Unpaired {
-    /// Row i and i + 2 belong to u_i and −u_i, columns likewise.
+    /// Rows i and i + 2 belong to u_i and −u_i, columns likewise.
     const fn new(pairs: &Tables<2>) -> Unpaired {
+        const SIGN: [f64; 4] = [1.0, 1.0, -1.0, -1.0];
         let mut unpaired = Unpaired {
             place: [0.0; 4],
             once: [[0.0; 4]; 4],
             twice: [[0.0; 4]; 4],
             series: [[0.0; 4]; 4],
         };
-        let mut k = 0;
-        while k < 8 {
-            // Which half of the nodes the row and the column belong to.
-            let (i, row) = (k / 4, if k % 2 == 0 { 1.0 } else { -1.0 });
-            let at = i + if k % 2 == 0 { 0 } else { 2 };
-            let j = k / 2 % 2;
-            let u = row * pairs.node[i];
-            unpaired.place[at] = 1.0 + u;
-            let mut half = 0;
-            while half < 2 {
-                let column = if half == 0 { 1.0 } else { -1.0 };
-                let of = j + 2 * half;
-                unpaired.once[of][at] = pairs.mean[j]
-                    + row * pairs.once_from_sums[j][i]
-                    + column * pairs.once_from_differences[j][i];
-                unpaired.twice[of][at] = pairs.twice_from_sums[j][i]
+        let mut row = 0;
+        while row < 4 {
+            let i = row % 2;
+            let u = SIGN[row] * pairs.node[i];
+            unpaired.place[row] = 1.0 + u;
+            let mut column = 0;
+            while column < 4 {
+                let j = column % 2;
+                unpaired.once[column][row] = pairs.mean[j]
+                    + SIGN[row] * pairs.once_from_sums[j][i]
+                    + SIGN[column] * pairs.once_from_differences[j][i];
+                unpaired.twice[column][row] = pairs.twice_from_sums[j][i]
                     + u * pairs.mean[j]
-                    + column * (row * pairs.twice_from_differences[j][i] - pairs.tilt[j]);
-                unpaired.series[of][2 * i] = pairs.series_from_sums[j][i];
-                unpaired.series[of][2 * i + 1] = column * pairs.series_from_differences[j][i];
-                half += 1;
+                    + SIGN[column]
+                        * (SIGN[row] * pairs.twice_from_differences[j][i] - pairs.tilt[j]);
+                unpaired.series[column][2 * i] = pairs.series_from_sums[j][i];
+                unpaired.series[column][2 * i + 1] =
+                    SIGN[column] * pairs.series_from_differences[j][i];
+                column += 1;
             }
-            k += 1;
+            row += 1;
         }
         unpaired
     }
