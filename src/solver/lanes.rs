@@ -60,20 +60,24 @@ macro_rules! lanes {
             fn sin(self) -> Self {
                 let number = |value: f64| self.same(value);
                 let halves = (self * number(std::f64::consts::FRAC_1_PI)).whole();
-                let rest = self - halves * number(PI_HIGH) - halves * number(PI_LOW);
+                let most = SimdFloat::mul_add(halves, number(-PI_HIGH), self);
+                let rest = SimdFloat::mul_add(halves, number(-PI_LOW), most);
                 let square = rest * rest;
                 // −1 for an odd number of half turns, of which 1 or −1 is left.
-                let odd = halves - (halves * number(0.5)).whole() * number(2.0);
-                let sign = number(1.0) - odd * odd * number(2.0);
-                // Two sums in r⁴, since each operation of a single one waits for the last.
+                let turns = (halves * number(0.5)).whole();
+                let odd = SimdFloat::mul_add(turns, number(-2.0), halves);
+                let sign = SimdFloat::mul_add(odd * odd, number(-2.0), number(1.0));
+                let turned = rest * sign;
+                // By pairs of terms (Estrin), since each operation of a single sum would
+                // wait for the last.
+                let pair = |k: usize| SimdFloat::mul_add(number(SINE[k + 1]), square, number(SINE[k]));
                 let fourth = square * square;
-                let mut sums = [number(SINE[0]), number(SINE[1])];
-                for k in (2..TERMS).step_by(2) {
-                    sums[0] = SimdFloat::mul_add(sums[0], fourth, number(SINE[k]));
-                    sums[1] = SimdFloat::mul_add(sums[1], fourth, number(SINE[k + 1]));
-                }
-                let sum = SimdFloat::mul_add(sums[0], square, sums[1]);
-                SimdFloat::mul_add(rest * square, sum, rest) * sign
+                let eighth = fourth * fourth;
+                let low = SimdFloat::mul_add(pair(2), fourth, pair(0));
+                let high = SimdFloat::mul_add(pair(6), fourth, pair(4));
+                let high = SimdFloat::mul_add(pair(8), eighth, high);
+                let sum = SimdFloat::mul_add(high, eighth, low);
+                SimdFloat::mul_add(turned * square, sum, turned)
             }
         }
 
@@ -114,7 +118,8 @@ macro_rules! lanes {
             fn within_a_turn(self) -> Self {
                 let number = |value: f64| self.same(value);
                 let turns = (self * number(0.5 * std::f64::consts::FRAC_1_PI)).whole();
-                self - turns * number(2.0 * PI_HIGH) - turns * number(2.0 * PI_LOW)
+                let most = SimdFloat::mul_add(turns, number(-2.0 * PI_HIGH), self);
+                SimdFloat::mul_add(turns, number(-2.0 * PI_LOW), most)
             }
 
             #[inline(always)]
@@ -136,17 +141,17 @@ lanes!(f64x4 of 4, f64x8 of 8);
 const PI_HIGH: f64 = 3.141_592_653_468_251_2;
 const PI_LOW: f64 = 1.215_420_101_301_238_4e-10;
 
-/// Number of terms, even: the next one is below 1e-20 at π/2.
-const TERMS: usize = 12;
+/// Number of terms: the next one is below 2e-18 at π/2.
+const TERMS: usize = 10;
 
-/// (−1)ᵏ/(2k+1)! for k = 12 to 1: sin r = r + r³ · Σ r²ᵏ⁻² (−1)ᵏ/(2k+1)!.
+/// (−1)ᵏ/(2k+1)! for k = 1 to 10: sin r = r + r³ · Σ r²ᵏ⁻² (−1)ᵏ/(2k+1)!.
 const SINE: [f64; TERMS] = {
     let mut terms = [0.0; TERMS];
     let mut factorial = 1.0;
     let mut k = 1;
     while k <= TERMS {
         factorial *= -((2 * k * (2 * k + 1)) as f64);
-        terms[TERMS - k] = 1.0 / factorial;
+        terms[k - 1] = 1.0 / factorial;
         k += 1;
     }
     terms
