@@ -145,6 +145,12 @@ impl Phase {
         }
     }
 
+    /// Whether initialization has ended.
+    #[must_use]
+    pub fn has_begun(self) -> bool {
+        !matches!(self, Phase::Instantiated | Phase::Initialization)
+    }
+
     /// The phase in words, for messages.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -1,6 +1,5 @@
 //! Getting and setting variables by their value references.
 
-use super::phase::Phase;
 use super::{Fault, Instance};
 use crate::actuator::drive::Polynomial;
 use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variability, Variable};
@@ -48,16 +47,25 @@ pub(super) fn row(reference: u32) -> Result<&'static Variable, Fault> {
     })
 }
 
+#[inline]
 fn typed(reference: u32, wanted: Type) -> Result<&'static Variable, Fault> {
-    let variable = row(reference)?;
-    if wanted.is_of(variable) {
-        return Ok(variable);
+    match VARIABLES.get(reference as usize) {
+        Some(variable) if wanted.is_of(variable) => Ok(variable),
+        _ => Err(not_of_type(reference, wanted)),
     }
-    Err(Fault::error(format!(
-        "{} (value reference {reference}) is not of type {}",
-        variable.name,
-        wanted.name()
-    )))
+}
+
+/// Why a value reference is not that of a variable of this type.
+#[cold]
+fn not_of_type(reference: u32, wanted: Type) -> Fault {
+    match row(reference) {
+        Ok(variable) => Fault::error(format!(
+            "{} (value reference {reference}) is not of type {}",
+            variable.name,
+            wanted.name()
+        )),
+        Err(fault) => fault,
+    }
 }
 
 impl Instance {
@@ -146,25 +154,31 @@ impl Instance {
         Ok(())
     }
 
+    #[inline]
     fn check_settable(&self, variable: &Variable) -> Result<(), Fault> {
-        let name = variable.name;
-        if matches!(variable.access, Access::Result { .. }) {
-            return Err(Fault::error(format!(
-                "{name} is a result of the model and cannot be set"
-            )));
-        }
-        let begun = !matches!(self.phase, Phase::Instantiated | Phase::Initialization);
-        if variable.variability == Variability::Fixed && begun {
-            return Err(Fault::error(format!(
-                "{name} is fixed after initialization; set it before, or call fmi2Reset first"
-            )));
-        }
         // Tunable parameters in continuous-time mode go beyond the standard: FMPy sets
         // them there, with the inputs.
+        let fixed = variable.variability == Variability::Fixed && self.phase.has_begun();
+        if fixed || matches!(variable.access, Access::Result { .. }) {
+            return Err(not_settable(variable));
+        }
         Ok(())
     }
 }
 
+/// Why a variable cannot be set, or not any more.
+#[cold]
+fn not_settable(variable: &Variable) -> Fault {
+    let name = variable.name;
+    Fault::error(match variable.access {
+        Access::Result { .. } => format!("{name} is a result of the model and cannot be set"),
+        _ => {
+            format!("{name} is fixed after initialization; set it before, or call fmi2Reset first")
+        }
+    })
+}
+
+#[inline]
 fn check_value(variable: &Variable, value: f64) -> Result<(), Fault> {
     let items = ON_PULL_IN.len();
     if variable.kind == Kind::Enumeration && !(1.0..=items as f64).contains(&value) {

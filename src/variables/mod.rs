@@ -210,25 +210,26 @@ impl Variable {
     ///
     /// # Errors
     /// A message with the value, the limit and the name of the variable.
+    #[inline]
     pub fn check(&self, value: f64) -> Result<(), String> {
+        match &self.kind {
+            Kind::Real { min, max, .. } if !(*min..=*max).contains(&value) => {
+                Err(self.refusal(value, [*min, *max]))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    #[cold]
+    fn refusal(&self, value: f64, [min, max]: [f64; 2]) -> String {
         let name = self.name;
-        let Kind::Real { min, max, .. } = self.kind else {
-            return Ok(());
-        };
         if !value.is_finite() {
-            return Err(format!("{name} = {value} is not a finite number"));
+            format!("{name} = {value} is not a finite number")
+        } else if value < min {
+            format!("{name} = {value} is below its minimum {min}; set a value from {min} on")
+        } else {
+            format!("{name} = {value} is above its maximum {max}; set a value up to {max}")
         }
-        if value < min {
-            return Err(format!(
-                "{name} = {value} is below its minimum {min}; set a value from {min} on"
-            ));
-        }
-        if value > max {
-            return Err(format!(
-                "{name} = {value} is above its maximum {max}; set a value up to {max}"
-            ));
-        }
-        Ok(())
     }
 }
 
