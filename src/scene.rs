@@ -76,11 +76,14 @@ impl Scene {
 /// Its motion, made anew for each substep: a copy that is kept would have to be
 /// kept up to date.
 impl Equation for Scene {
-    type Local = LocalMotion;
+    type Local<'a> = LocalMotion<'a>;
 
     #[inline(always)]
-    fn at(&self, time: Double) -> LocalMotion {
-        self.motion().at(time)
+    fn at(&self, time: &Double) -> LocalMotion<'_> {
+        LocalMotion {
+            coefficients: Coefficients::fold(&self.parameters),
+            drive: self.drive.at(time),
+        }
     }
 
     fn is_autonomous(&self) -> bool {

@@ -230,7 +230,7 @@ fn rest_at_an_equilibrium_stays_and_wakes() {
     let mut trajectory = from_rest(1e-10);
     advance(&mut trajectory, &direct([0.0; 3], 0.0, 0.0), 1e6);
     assert_eq!(trajectory.state(), REST);
-    trajectory.restart(Double::new(1e6));
+    trajectory.restart();
     advance(&mut trajectory, &direct([0.0; 3], 0.3, 0.0), 10.0);
     assert!(trajectory.position() > 1.0);
 }

@@ -267,16 +267,16 @@ struct Unfolded {
     surface: [f64; 3],
 }
 
-struct LocalUnfolded {
-    motion: LocalMotion,
+struct LocalUnfolded<'a> {
+    motion: LocalMotion<'a>,
     inertia: f64,
     surface: [f64; 3],
 }
 
 impl Equation for Unfolded {
-    type Local = LocalUnfolded;
+    type Local<'a> = LocalUnfolded<'a>;
 
-    fn at(&self, time: Double) -> LocalUnfolded {
+    fn at(&self, time: &Double) -> LocalUnfolded<'_> {
         LocalUnfolded {
             motion: self.motion.at(time),
             inertia: self.motion.coefficients.inertia,
@@ -289,7 +289,7 @@ impl Equation for Unfolded {
     }
 }
 
-impl LocalEquation for LocalUnfolded {
+impl LocalEquation for LocalUnfolded<'_> {
     type Load<N: Number> = Load<N>;
 
     #[inline(always)]
@@ -311,8 +311,8 @@ impl LocalEquation for LocalUnfolded {
         (driven - seventh * x * elastic) / (number(self.inertia) * seventh + x + x)
     }
 
-    fn longest_substep(&self) -> f64 {
-        self.motion.longest_substep()
+    fn load_frequency(&self) -> f64 {
+        self.motion.load_frequency()
     }
 
     fn natural_frequency(&self, state: State) -> f64 {
@@ -324,12 +324,12 @@ impl LocalEquation for LocalUnfolded {
 #[derive(Clone, Copy)]
 struct Ideal(Motion);
 
-struct LocalIdeal(LocalMotion, f64);
+struct LocalIdeal<'a>(LocalMotion<'a>, f64);
 
 impl Equation for Ideal {
-    type Local = LocalIdeal;
+    type Local<'a> = LocalIdeal<'a>;
 
-    fn at(&self, time: Double) -> LocalIdeal {
+    fn at(&self, time: &Double) -> LocalIdeal<'_> {
         LocalIdeal(self.0.at(time), self.0.coefficients.inertia)
     }
 
@@ -338,7 +338,7 @@ impl Equation for Ideal {
     }
 }
 
-impl LocalEquation for LocalIdeal {
+impl LocalEquation for LocalIdeal<'_> {
     type Load<N: Number> = Load<N>;
 
     #[inline(always)]
@@ -357,8 +357,8 @@ impl LocalEquation for LocalIdeal {
         (driven - (fourth * fourth) * elastic) / seventh.mul_add(number(self.1), x + x)
     }
 
-    fn longest_substep(&self) -> f64 {
-        self.0.longest_substep()
+    fn load_frequency(&self) -> f64 {
+        self.0.load_frequency()
     }
 
     fn natural_frequency(&self, state: State) -> f64 {

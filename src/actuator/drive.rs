@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::double::Double;
+use crate::solver::double::{Double, halves};
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
@@ -113,25 +113,33 @@ impl Harmonic {
 
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn angle(&self, time: Double) -> f64 {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
         const TURN: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
         const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
-        let angle = time.scale(self.frequency);
-        let turns = angle.high * (1.0 / std::f64::consts::TAU);
-        let rest = if turns.abs() < EXACT_TURNS {
+        let turns = (time.high * self.frequency) * (1.0 / std::f64::consts::TAU);
+        if turns.abs() < EXACT_TURNS {
             let turns = turns.whole();
-            (angle.high - turns * TURN[0]) - turns * TURN[1] + angle.low
+            let [time_head, time_tail] = halves(time.high);
+            let [head, tail] = halves(self.frequency);
+            let rest = (time_head * tail + (time_tail + time.low) * self.frequency) + self.phase;
+            ((time_head * head - turns * TURN[0]) - turns * TURN[1]) + rest
         } else {
-            let turns = turns.round();
-            let turn = Double {
-                high: std::f64::consts::TAU,
-                low: 2.449_293_598_294_706_4e-16,
-            };
-            angle.sub(turn.scale(turns)).value()
+            self.late_angle(time)
+        }
+    }
+
+    /// The same after more turns than that.
+    #[inline(never)]
+    fn late_angle(&self, time: Double) -> f64 {
+        let turn = Double {
+            high: std::f64::consts::TAU,
+            low: 2.449_293_598_294_706_4e-16,
         };
-        rest + self.phase
+        let angle = time.scale(self.frequency);
+        let turns = (angle.high * (1.0 / std::f64::consts::TAU)).round();
+        angle.sub(turn.scale(turns)).value() + self.phase
     }
 
     /// The alternating voltage at `time` as it changes in a direction, whose
@@ -209,91 +217,81 @@ impl Drive {
     /// The drive seen from `time`.
     #[must_use]
     #[inline(always)]
-    pub fn at(&self, time: Double) -> LocalDrive {
-        let Drive {
-            since,
-            mut voltage,
-            mut prestress,
-            harmonic,
-        } = *self;
-        let constant = voltage.is_constant() && prestress.is_constant();
-        if !constant {
-            let shift = time.since(since);
-            voltage.shift(shift);
-            prestress.shift(shift);
-        }
-        let Harmonic {
-            amplitude,
-            frequency,
-            ..
-        } = harmonic;
-        let mut angle = 0.0;
-        if amplitude != 0.0 {
-            angle = harmonic.angle(time);
-            if frequency == 0.0 {
-                voltage.set_value(voltage.value() + amplitude * angle.sin());
-            }
-        }
+    pub fn at(&self, time: &Double) -> LocalDrive<'_> {
+        let constant = self.voltage.is_constant() && self.prestress.is_constant();
         LocalDrive {
-            voltage,
-            prestress,
-            constant,
-            amplitude,
-            angle,
-            frequency: if amplitude == 0.0 { 0.0 } else { frequency },
+            drive: self,
+            shift: if constant {
+                None
+            } else {
+                Some(time.since(self.since))
+            },
+            angle: if self.harmonic.amplitude == 0.0 {
+                None
+            } else {
+                Some(self.harmonic.angle(*time))
+            },
         }
     }
 }
 
 /// A [`Drive`] with its origin of time moved.
 #[derive(Clone, Copy, Debug)]
-pub struct LocalDrive {
-    voltage: Polynomial,
-    prestress: Polynomial,
-    /// Whether both keep their values.
-    constant: bool,
-    amplitude: f64,
-    /// ωt + ϑ at the origin, less whole turns.
-    angle: f64,
-    /// 0 where nothing alternates.
-    frequency: f64,
+pub struct LocalDrive<'a> {
+    drive: &'a Drive,
+    /// The origin, counted as the time of the inputs; nothing where both keep their
+    /// values.
+    shift: Option<f64>,
+    /// ωt + ϑ at the origin, less whole turns; nothing where nothing alternates.
+    angle: Option<f64>,
 }
 
-impl LocalDrive {
+impl LocalDrive<'_> {
+    /// An input at `offset` after the origin.
+    #[inline(always)]
+    fn input<N: Number>(&self, input: &Polynomial, offset: N) -> N {
+        match self.shift {
+            None => offset.same(input.value()),
+            Some(shift) => input.at(offset + offset.same(shift)),
+        }
+    }
+
     /// Total voltage φ + φ_a sin(ωt + ϑ) at `offset` after the origin.
     #[inline(always)]
     pub fn voltage<N: Number>(&self, offset: N) -> N {
-        let polynomial = if self.constant {
-            offset.same(self.voltage.value())
-        } else {
-            self.voltage.at(offset)
+        let voltage = self.input(&self.drive.voltage, offset);
+        let Some(angle) = self.angle else {
+            return voltage;
         };
-        if self.frequency == 0.0 {
-            return polynomial;
-        }
-        let angle = offset.mul_add(offset.same(self.frequency), offset.same(self.angle));
-        angle.sin().mul_add(offset.same(self.amplitude), polynomial)
+        let Harmonic {
+            amplitude,
+            frequency,
+            ..
+        } = self.drive.harmonic;
+        let angle = offset.mul_add(offset.same(frequency), offset.same(angle));
+        angle.sin().mul_add(offset.same(amplitude), voltage)
     }
 
     /// Prestress at `offset` after the origin.
     #[inline(always)]
     pub fn prestress<N: Number>(&self, offset: N) -> N {
-        if self.constant {
-            return offset.same(self.prestress.value());
-        }
-        self.prestress.at(offset)
+        self.input(&self.drive.prestress, offset)
     }
 
     /// What the voltage may be for a while, by size.
     #[inline(always)]
     pub fn largest_voltage(&self) -> f64 {
-        self.voltage.value().abs() + self.amplitude.abs()
+        self.input(&self.drive.voltage, 0.0).abs() + self.drive.harmonic.amplitude.abs()
     }
 
     /// Angular frequency of the alternating voltage, 0 where there is none.
     #[must_use]
+    #[inline(always)]
     pub fn frequency(&self) -> f64 {
-        self.frequency
+        match self.angle {
+            Some(_) => self.drive.harmonic.frequency,
+            None => 0.0,
+        }
     }
 }
 

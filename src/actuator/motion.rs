@@ -86,10 +86,10 @@ pub fn energy(coefficients: &Coefficients, load: Load<f64>, state: State) -> f64
 }
 
 impl Equation for Motion {
-    type Local = LocalMotion;
+    type Local<'a> = LocalMotion<'a>;
 
     #[inline(always)]
-    fn at(&self, time: Double) -> LocalMotion {
+    fn at(&self, time: &Double) -> LocalMotion<'_> {
         LocalMotion {
             coefficients: self.coefficients,
             drive: self.drive.at(time),
@@ -103,12 +103,12 @@ impl Equation for Motion {
 
 /// A [`Motion`] with its origin of time moved.
 #[derive(Clone, Copy, Debug)]
-pub struct LocalMotion {
-    coefficients: Coefficients,
-    drive: LocalDrive,
+pub struct LocalMotion<'a> {
+    pub(crate) coefficients: Coefficients,
+    pub(crate) drive: LocalDrive<'a>,
 }
 
-impl LocalEquation for LocalMotion {
+impl LocalEquation for LocalMotion<'_> {
     type Load<N: Number> = Load<N>;
 
     #[inline(always)]
@@ -125,10 +125,10 @@ impl LocalEquation for LocalMotion {
         acceleration(&self.coefficients.same(position), load, position, rate)
     }
 
-    /// Two periods of φ² under the alternating voltage, which the 16 nodes of a
-    /// substep resolve.
-    fn longest_substep(&self) -> f64 {
-        2.0 * std::f64::consts::PI / self.drive.frequency()
+    /// That of φ² under the alternating voltage.
+    #[inline(always)]
+    fn load_frequency(&self) -> f64 {
+        2.0 * self.drive.frequency()
     }
 
     /// √|∂λ''/∂λ| with the terms of the stiffness added up by size, since their sum

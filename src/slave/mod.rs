@@ -141,7 +141,10 @@ impl Instance {
     pub fn view(&self) -> View<'_> {
         let scene = &self.scene;
         let (place, time, collapse) = match &self.course {
-            Course::Run(run) => (Place::On(run.trajectory()), run.time(), run.collapse()),
+            Course::Run(run) => {
+                let trajectory = run.trajectory();
+                (Place::On(trajectory), trajectory.time(), run.collapse())
+            }
             Course::Exchange(now) => (Place::At(now.state), &now.time, now.collapse.as_ref()),
             // The drive counts from the start time.
             Course::Ahead => (Place::At(scene.start), &scene.drive.since, None),
@@ -285,7 +288,7 @@ impl Instance {
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
         if let Course::Run(run) = &self.course {
-            self.scene.drive.rebase(*run.time());
+            self.scene.drive.rebase(*run.trajectory().time());
         }
     }
 

@@ -20,8 +20,6 @@ const STEP_ROUNDING: f64 = 1e-6;
 /// A running simulation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Run {
-    /// Start time and all steps summed up.
-    time: Double,
     trajectory: Trajectory,
     collapse: Option<Collapse>,
     /// The scene has changed since the trajectory has followed it.
@@ -35,7 +33,6 @@ impl Run {
             trajectory = trajectory.recording_extremes();
         }
         Run {
-            time,
             trajectory,
             collapse: None,
             stale: false,
@@ -48,14 +45,7 @@ impl Run {
         self.trajectory.is_sound()
             && self.trajectory.keeps_to(scene.limits, tolerance)
             && self.trajectory.extremes().is_some() == scene.record_extremes
-            && self.time.is_sound()
             && collapsed.is_sound()
-    }
-
-    /// The present time of the model.
-    #[must_use]
-    pub fn time(&self) -> &Double {
-        &self.time
     }
 
     /// The motion so far.
@@ -81,12 +71,12 @@ impl Run {
         step: f64,
         stop_time: Option<f64>,
     ) -> Result<(), Fault> {
-        if !(step.is_finite() && step > 0.0) {
+        if !(step > 0.0 && step <= f64::MAX) {
             return Err(Fault::error(format!(
                 "the communication step {step} is not a finite number above 0"
             )));
         }
-        let time = self.time.value();
+        let time = self.trajectory.time().value();
         let rounding = TIME_ROUNDING * time.abs() + STEP_ROUNDING * step;
         let off = (current - time).abs();
         if off.is_nan() || off > rounding {
@@ -109,55 +99,47 @@ impl Run {
     /// Follows the motion for one step that has been checked.
     pub(super) fn step(&mut self, scene: &Scene, step: f64) -> Result<Option<Event>, Fault> {
         if self.collapse.is_some() {
-            self.time = self.time.plus(step);
+            self.trajectory.wait(Double::new(step));
             return Ok(None);
         }
         if self.stale {
-            self.trajectory.restart(self.time);
+            self.trajectory.restart();
             self.stale = false;
         }
         match self.trajectory.advance(scene, step) {
-            Ok(Progress::Whole) => {
-                self.time = self.time.plus(step);
-                Ok(None)
-            }
+            Ok(Progress::Whole) => Ok(None),
             Ok(Progress::Stopped { limit, after }) => {
-                let at = self.time.plus(after);
-                self.collapse = Some(Collapse { limit, time: at });
-                let text = describe_collapse(scene, limit, at.value());
+                let time = *self.trajectory.time();
+                self.collapse = Some(Collapse { limit, time });
+                let text = describe_collapse(scene, limit, time.value());
                 match scene.on_pull_in {
                     OnPullIn::Hold => {
-                        self.time = self.time.plus(step);
+                        self.trajectory.wait(Double::new(step).plus(-after));
                         Ok(Some(Event {
                             warning: false,
                             text: format!("{text}; it stays there (on_pull_in = hold)"),
                         }))
                     }
-                    OnPullIn::Terminate => {
-                        self.time = at;
-                        Err(Fault::discard(format!(
-                            "{text}; the simulation should end here (on_pull_in = terminate)"
-                        )))
-                    }
+                    OnPullIn::Terminate => Err(Fault::discard(format!(
+                        "{text}; the simulation should end here (on_pull_in = terminate)"
+                    ))),
                 }
             }
             Err(failure) => Err(self.fail(failure)),
         }
     }
 
-    fn fail(&mut self, failure: Failure) -> Fault {
-        let (after, why) = match failure {
-            Failure::SubstepTooShort { length, after } => (
-                after,
-                format!("a substep of {length} is too short to go on"),
-            ),
-            Failure::TooManySubsteps { most, after } => (
-                after,
-                format!("the step needs more than {most} substeps; use shorter steps"),
-            ),
+    fn fail(&self, failure: Failure) -> Fault {
+        let why = match failure {
+            Failure::SubstepTooShort { length, .. } => {
+                format!("a substep of {length} is too short to go on")
+            }
+            Failure::TooManySubsteps { most, .. } => {
+                format!("the step needs more than {most} substeps; use shorter steps")
+            }
         };
-        self.time = self.time.plus(after);
-        let (time, stretch) = (self.time.value(), self.trajectory.position());
+        let time = self.trajectory.time().value();
+        let stretch = self.trajectory.position();
         Fault::discard(format!(
             "the integration stopped at time {time} and stretch {stretch}: {why}"
         ))

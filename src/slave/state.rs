@@ -14,7 +14,7 @@ use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RAN
 use crate::variables::{Access, VARIABLES};
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 2;
+pub const LAYOUT: u16 = 3;
 
 impl Instance {
     /// The instance as bytes, in the memory of `buffer`.
@@ -77,7 +77,7 @@ impl Instance {
         if !self.experiment.is_sound() {
             return Err("times or tolerance are out of range".into());
         }
-        let before = matches!(self.phase, Phase::Instantiated | Phase::Initialization);
+        let before = !self.phase.has_begun();
         let matches_phase = match (&self.course, self.interface) {
             (Course::Ahead, _) => before,
             (Course::Run(_), Interface::CoSimulation) => matches!(

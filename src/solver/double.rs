@@ -125,18 +125,18 @@ const fn exact_sum(a: f64, b: f64) -> Double {
 /// `const` nor fast on every processor).
 const fn exact_product(a: f64, b: f64) -> Double {
     let high = a * b;
-    let (a_high, a_low) = split(a);
-    let (b_high, b_low) = split(b);
+    let [a_high, a_low] = halves(a);
+    let [b_high, b_low] = halves(b);
     let low = ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low;
     Double { high, low }
 }
 
-/// `a` as a sum of two numbers of 26 bits (Veltkamp).
-const fn split(a: f64) -> (f64, f64) {
+/// `a` as a sum of two numbers of 26 bits, the larger one first (Veltkamp).
+pub(crate) const fn halves(a: f64) -> [f64; 2] {
     const FACTOR: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = FACTOR * a;
     let high = scaled - (scaled - a);
-    (high, a - high)
+    [high, a - high]
 }
 
 #[cfg(test)]

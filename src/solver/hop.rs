@@ -5,8 +5,6 @@
 //! than 4 nodes, whose end is of order 8. They fit one register, so that, unlike in
 //! [`super::collocation`], nothing is gained by folding them into pairs.
 
-use std::ops::RangeInclusive;
-
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 
 use super::collocation::{Closeness, product};
@@ -20,61 +18,80 @@ use super::{Equation, LocalEquation, State};
 /// A hop is shorter than this part of the motion's time scale.
 const SHORT: f64 = 0.25;
 
-/// P_0 moves the position at the end by as much as P_1 times this, the other way.
-const THIRD: f64 = 1.0 / 3.0;
-
 /// Sweeps after which the iteration is given up: in a hop each shrinks the error
 /// some thirtyfold at least.
 const MOST_SWEEPS: u32 = 16;
 
-/// One step from a state at a time.
+/// One step from a time on.
 #[derive(Clone, Copy, Debug)]
-pub struct Hop {
+pub struct Hop<'a> {
     /// Time of the model at its begin.
-    pub time: Double,
-    /// State there.
-    pub state: State,
+    pub time: &'a Double,
     /// About what f is at its begin, such as what it was before the equation changed.
-    pub f: Option<f64>,
+    pub f: f64,
     /// How long it is.
     pub length: f64,
     /// Positions between which it may go.
     pub clear: (f64, f64),
 }
 
-impl Hop {
-    /// The state and f at its end; nothing where it is too long or does not stay between
-    /// the clear positions.
-    pub fn end<E: Equation>(
+impl Hop<'_> {
+    /// Moves the state to its end and returns f there; nothing where it is too long or
+    /// does not stay between the clear positions.
+    ///
+    /// The state is changed where it lies, since the next hop waits for it: each time it is
+    /// handed on in memory is a tenth of a sweep.
+    pub fn take<E: Equation>(
         &self,
         level: Level,
         equation: &E,
         control: StepControl,
-    ) -> Option<(State, f64)> {
+        state: &mut State,
+    ) -> Option<f64> {
+        // All of it, since what is not done in lanes takes as many instructions.
+        dispatch!(level, simd => self.take_with(simd, equation, control, state))
+    }
+
+    #[inline(always)]
+    fn take_with<S: Simd, E: Equation>(
+        &self,
+        simd: S,
+        equation: &E,
+        control: StepControl,
+        state: &mut State,
+    ) -> Option<f64> {
         let local = equation.at(self.time);
-        let part = self.length * local.natural_frequency(self.state);
-        // 4 nodes see the load as it is over a quarter of what 16 do.
-        if part.is_nan() || part >= SHORT || 4.0 * self.length > local.longest_substep() {
+        let scale = state.position.abs();
+        let mut part = f64::NAN;
+        let closeness = || {
+            part = part_of_time_scale(&local, *state, self.length)?;
+            Some(control.closeness(scale, part))
+        };
+        let solved = solve(simd, &local, *state, self.length, self.f, closeness)?;
+        let good = solved.stays_between(self.clear, *state)
+            && solved.is_within(control.settled_within(part) * scale, part);
+        if !good {
             return None;
         }
-        let scale = self.state.position.abs();
-        let f = match self.f {
-            Some(f) => f,
-            None => local.acceleration_from(self.state),
-        };
-        let closeness = control.closeness(scale, part);
-        // Here, since a state that is handed over in two registers would be put down in two
-        // stores and read in one load, which waits for both: a quarter of the time of a hop.
-        let solved = dispatch!(level, simd => {
-            solve(simd, &local, self.state, self.length, f, closeness)
-        })?;
-        let reach = solved.reach(self.state);
-        let (lowest, highest) = self.clear;
-        let good = *reach.start() > lowest
-            && *reach.end() < highest
-            && solved.is_within(control.settled_within(part) * scale, part);
-        good.then_some((solved.end, solved.last_f))
+        *state = solved.end;
+        Some(solved.last_f)
     }
+}
+
+/// The part of the motion's time scale that a hop is, where it is not too long.
+#[inline(always)]
+fn part_of_time_scale<L: LocalEquation>(local: &L, state: State, length: f64) -> Option<f64> {
+    let part = length * local.natural_frequency(state);
+    // Half a turn of the load, as much as 16 nodes see of it in a substep.
+    let turns = length * local.load_frequency();
+    (part < SHORT && turns <= std::f64::consts::PI).then_some(part)
+}
+
+/// f at the begin of a hop, of which nothing is known; nothing where it is too long.
+#[inline(never)]
+pub fn first_f<E: Equation>(equation: &E, time: &Double, state: State, length: f64) -> Option<f64> {
+    let local = equation.at(time);
+    part_of_time_scale(&local, state, length).map(|_| local.acceleration_from(state))
 }
 
 /// A hop that has been solved.
@@ -90,13 +107,13 @@ struct Solved {
 }
 
 impl Solved {
-    /// A range that holds the motion from `start` on: the chord, and what a curve of
-    /// this f can lie beside it.
+    /// Whether the motion from `start` on stays between these positions: the chord does,
+    /// and what a curve of this f can lie beside it.
     #[inline(always)]
-    fn reach(&self, start: State) -> RangeInclusive<f64> {
-        let (from, to) = (start.position, self.end.position);
+    fn stays_between(&self, (lowest, highest): (f64, f64), start: State) -> bool {
         let beside = 0.5 * self.size.iter().sum::<f64>();
-        from.min(to) - beside..=from.max(to) + beside
+        let holds = |position: f64| position - beside > lowest && position + beside < highest;
+        holds(start.position) & holds(self.end.position)
     }
 
     /// Whether the error at the end of a hop that is this `part` of the time scale is at
@@ -116,8 +133,8 @@ impl Solved {
     }
 }
 
-/// Solves a hop; `f` is what it is about at the begin. Nothing where the iteration
-/// does not converge.
+/// Solves a hop; `f` is what it is about at the begin, `closeness` how closely to solve
+/// it, if it is to be solved at all. Nothing where the iteration does not converge.
 #[inline(always)]
 fn solve<S: Simd, L: LocalEquation>(
     simd: S,
@@ -125,47 +142,52 @@ fn solve<S: Simd, L: LocalEquation>(
     start: State,
     length: f64,
     f: f64,
-    closeness: Closeness,
+    mut closeness: impl FnMut() -> Option<Closeness>,
 ) -> Option<Solved> {
     let half = 0.5 * length;
     let square = half * half;
     let fill = |value: f64| <f64x4<S> as Lanes<S, 4>>::fill(simd, value);
 
     let place: f64x4<S> = Lanes::load(simd, &GAUSS_4.place);
-    let load = equation.load(place * fill(half));
-    let line = place.mul_add(fill(half * start.rate), fill(start.position));
-    let mut bent = place * place * fill(0.5 * square * f);
-    let mut gain = place * fill(half * f);
-    let mut last_change = f64::NAN;
+    let offset = place * fill(half);
+    let load = equation.load(offset);
+    let line = offset.mul_add(fill(start.rate), fill(start.position));
+    let gain = offset * fill(f);
+    let mut bent = offset * gain * fill(0.5);
+    let mut position = line + bent;
+    let mut rate = gain + fill(start.rate);
+    let mut last_change = f64::INFINITY;
+    let mut wanted: Option<Closeness> = None;
     for _ in 0..MOST_SWEEPS {
-        let f = equation
-            .acceleration(load, line + bent, fill(start.rate) + gain)
-            .store();
+        let f = equation.acceleration(load, position, rate).store();
         let twice: f64x4<S> = product(simd, &GAUSS_4.twice, &f);
         let once: f64x4<S> = product(simd, &GAUSS_4.once, &f);
         // Of what f adds, since in a short step the position would round it away.
         let new = twice * fill(square);
         let change = Lanes::<S, 4>::abs(new - bent).largest();
         bent = new;
-        gain = once * fill(half);
-        if closeness.is_reached(change, last_change, [change, last_change]) {
-            let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
-            let size = Lanes::<S, 4>::abs(series * fill(square)).store();
-            let series = series.store();
-            let end = State {
-                position: start.position
-                    + (length * start.rate + 2.0 * square * (series[0] - series[1] * THIRD)),
-                rate: start.rate + length * series[0],
-            };
-            return Some(Solved {
-                end,
-                // Each Legendre polynomial is 1 there.
-                last_f: (series[0] + series[1]) + (series[2] + series[3]),
-                size,
-            });
-        }
-        if change >= last_change {
-            return None;
+        // Not from `bent`, for which it would have to wait.
+        position = twice.mul_add(fill(square), line);
+        rate = once.mul_add(fill(half), fill(start.rate));
+        match wanted {
+            // Only now, so that it is worked out while the first sweep is waited for.
+            None => wanted = Some(closeness()?),
+            Some(wanted) if wanted.is_reached(change, last_change, [change, last_change]) => {
+                let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
+                let added: f64x4<S> = product(simd, &GAUSS_4.end, &f);
+                let scale: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 0.0]);
+                let drift: f64x4<S> = Lanes::load(simd, &[length * start.rate, 0.0, 0.0, 0.0]);
+                let from: f64x4<S> = Lanes::load(simd, &[start.position, start.rate, 0.0, 0.0]);
+                let [position, rate, last_f, _] =
+                    Lanes::<S, 4>::store(added.mul_add(scale, drift) + from);
+                return Some(Solved {
+                    end: State { position, rate },
+                    last_f,
+                    size: Lanes::<S, 4>::abs(series * fill(square)).store(),
+                });
+            }
+            Some(_) if change >= last_change => return None,
+            Some(_) => {}
         }
         last_change = change;
     }
@@ -184,9 +206,9 @@ mod tests {
     struct Pushed(f64);
 
     impl Equation for Pushed {
-        type Local = Pushed;
+        type Local<'a> = Pushed;
 
-        fn at(&self, _time: Double) -> Pushed {
+        fn at(&self, _time: &Double) -> Pushed {
             *self
         }
 
@@ -210,8 +232,8 @@ mod tests {
             load - x + square * square * inverse - rate * rate * inverse
         }
 
-        fn longest_substep(&self) -> f64 {
-            f64::INFINITY
+        fn load_frequency(&self) -> f64 {
+            self.0
         }
 
         fn natural_frequency(&self, state: State) -> f64 {
@@ -233,7 +255,7 @@ mod tests {
             let time_scale = 1.0 / equation.natural_frequency(state);
             let part = 0.1 + 0.4 * random(4);
             let length = part * time_scale;
-            let closeness = StepControl::new(1e-13).closeness(1.0, 0.1);
+            let closeness = || Some(StepControl::new(1e-13).closeness(1.0, 0.1));
             let f = equation.acceleration_from(state);
             let solved = dispatch!(Level::new(), simd => {
                 solve(simd, &equation, state, length, f, closeness)

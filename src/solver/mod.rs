@@ -49,10 +49,12 @@ pub struct State {
 pub trait Equation {
     /// The equation seen from a moment, with what depends on that moment only
     /// worked out.
-    type Local: LocalEquation;
+    type Local<'a>: LocalEquation
+    where
+        Self: 'a;
 
     /// The equation with the origin of time moved to `time`.
-    fn at(&self, time: Double) -> Self::Local;
+    fn at(&self, time: &Double) -> Self::Local<'_>;
 
     /// Whether f does not depend on t. Such an equation must also be
     /// conservative and even in x', f(x, x') = f(x, −x'): then its motion
@@ -71,9 +73,15 @@ pub trait LocalEquation {
     /// x'' under this load.
     fn acceleration<N: Number>(&self, load: Self::Load<N>, position: N, rate: N) -> N;
 
-    /// The longest substep in whose nodes the load is seen as it is: one that
-    /// alternates faster would be mistaken for a slow one.
-    fn longest_substep(&self) -> f64;
+    /// The fastest angular frequency with which the load alternates, 0 where it does not.
+    fn load_frequency(&self) -> f64;
+
+    /// The longest substep in whose 16 nodes the load is seen as it is, two of its periods:
+    /// one that alternates faster would be mistaken for a slow one.
+    #[inline(always)]
+    fn longest_substep(&self) -> f64 {
+        4.0 * std::f64::consts::PI / self.load_frequency()
+    }
 
     /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly. Its
     /// inverse is the time scale of the motion.

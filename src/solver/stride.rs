@@ -150,11 +150,11 @@ impl Strides {
         equation: &E,
         control: StepControl,
         way: &mut Way,
-        method: impl Fn(&E::Local, &Task<P>) -> Result<Substep<P>, Diverged>,
+        method: impl Fn(&E::Local<'_>, &Task<P>) -> Result<Substep<P>, Diverged>,
     ) -> End {
         loop {
             let rest = way.target.since(way.now);
-            let local = equation.at(way.time());
+            let local = equation.at(&way.time());
             let longest = local.longest_substep();
             let few = P < MOST_PAIRS && way.now == Double::ZERO;
             if few && longest.is_finite() && longest * local.natural_frequency(way.state) < 1.0 {

@@ -75,6 +75,8 @@ pub struct Unpaired {
     pub twice: Columns<4>,
     /// Legendre coefficients a_0 to a_3.
     pub series: Columns<4>,
+    /// At the end: the twice and the once integrated f, f itself, and 0.
+    pub end: Columns<4>,
 }
 
 /// The tables of the method of 4 nodes.
@@ -89,6 +91,7 @@ impl Unpaired {
             once: [[0.0; 4]; 4],
             twice: [[0.0; 4]; 4],
             series: [[0.0; 4]; 4],
+            end: [[0.0; 4]; 4],
         };
         let mut row = 0;
         while row < 4 {
@@ -111,6 +114,18 @@ impl Unpaired {
                 column += 1;
             }
             row += 1;
+        }
+        let mut column = 0;
+        while column < 4 {
+            // Each Legendre polynomial is 1 there.
+            let [zeroth, first, second, third] = unpaired.series[column];
+            unpaired.end[column] = [
+                2.0 * (zeroth - first / 3.0),
+                2.0 * zeroth,
+                (zeroth + first) + (second + third),
+                0.0,
+            ];
+            column += 1;
         }
         unpaired
     }
@@ -316,6 +331,7 @@ mod tests {
             once,
             twice,
             series,
+            end,
         } = &GAUSS_4;
         for n in 0..4 {
             let values = place.map(|place| place.powi(n));
@@ -330,12 +346,14 @@ mod tests {
                     "{n}"
                 );
             }
-            let end: f64 = (0..4).map(|k| apply(series, k)).sum();
-            assert!((end - 2.0_f64.powi(n)).abs() < 4e-15, "{n}");
-            assert!(
-                (apply(series, 0) - 2.0_f64.powi(n) / order).abs() < 4e-15,
-                "{n}"
-            );
+            let last: f64 = (0..4).map(|k| apply(series, k)).sum();
+            assert!((last - 2.0_f64.powi(n)).abs() < 4e-15, "{n}");
+            let mean = 2.0_f64.powi(n) / order;
+            assert!((apply(series, 0) - mean).abs() < 4e-15, "{n}");
+            let by_hand = [4.0 * mean / next, 2.0 * mean, 2.0_f64.powi(n), 0.0];
+            for (row, by_hand) in by_hand.into_iter().enumerate() {
+                assert!((apply(end, row) - by_hand).abs() < 8e-15, "{n}, {row}");
+            }
         }
     }
 

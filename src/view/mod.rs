@@ -80,7 +80,7 @@ impl Quantities<f64> for View<'_> {
     }
 
     fn total_voltage(&self) -> f64 {
-        self.scene.drive.at(*self.time).voltage(0.0)
+        self.scene.drive.at(self.time).voltage(0.0)
     }
 }
 

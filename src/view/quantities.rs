@@ -137,7 +137,7 @@ impl Moment<Series> {
         held: Option<Limit>,
         order: usize,
     ) -> Moment<Series> {
-        let drive = scene.drive.at(time);
+        let drive = scene.drive.at(&time);
         let offset = Series::variable();
         let voltage = drive.voltage(offset);
         let mut stretch = Series::constant(state.position);

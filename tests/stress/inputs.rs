@@ -12,7 +12,6 @@ fn jumps(seed: u64, count: u32, tolerance: f64, choose: impl Fn(&mut Random) -> 
     let actuator = random.actuator([-1.0, 6.0], 0.2, 0.1);
     let unit = (actuator.aspect + 2.0).sqrt();
     let mut trajectory = from_rest(tolerance);
-    let mut time = Double::ZERO;
     let mut worst = 0.0_f64;
     for _ in 0..count {
         let load = choose(&mut random);
@@ -20,9 +19,8 @@ fn jumps(seed: u64, count: u32, tolerance: f64, choose: impl Fn(&mut Random) -> 
         let State { position, rate } = trajectory.state();
         let mut reference = Taylor::new(position, rate);
         reference.advance(&actuator, &load, step);
-        trajectory.restart(time);
+        trajectory.restart();
         advance(&mut trajectory, &motion(&actuator, &load), step);
-        time = time.add(Double::new(step));
         let State { position, rate } = trajectory.state();
         let [stretch, stretch_rate] = reference.state();
         let error = (position - stretch)
@@ -83,15 +81,13 @@ fn many_short_steps_under_changing_inputs_keep_the_tolerance() {
             let mut random = Random(11);
             let mut load = Load::constant(0.4, 0.0);
             let (mut trajectory, mut reference) = (from_rest(tolerance), Taylor::new(1.0, 0.0));
-            let mut time = Double::ZERO;
             let mut worst = 0.0_f64;
             for _ in 0..most.min(2000.0 / step) as u32 {
                 let change = random.between(-0.05, 0.05) * step;
                 load.voltage = (load.voltage + change).clamp(0.1, 0.6);
-                trajectory.restart(time);
+                trajectory.restart();
                 advance(&mut trajectory, &motion(&actuator, &load), step);
                 reference.advance(&actuator, &load, step);
-                time = time.plus(step);
                 worst = worst.max((trajectory.position() - reference.state()[0]).abs());
             }
             let what = format!("c = {aspect}, steps of {step}, tolerance {tolerance:e}");
@@ -112,15 +108,13 @@ fn jumps_leave_the_phase_of_the_alternating_voltage_alone() {
         let mut load = alternating(0.3, random.between(0.05, 1.0));
         let mut trajectory = from_rest(1e-12);
         let mut reference = Taylor::new(1.0, 0.0);
-        let mut time = Double::ZERO;
         let mut worst = 0.0_f64;
         for _ in 0..300 {
             load.voltage = random.between(-0.3, 0.3);
             let step = random.between(0.01, 3.0);
-            trajectory.restart(time);
+            trajectory.restart();
             advance(&mut trajectory, &motion(&actuator, &load), step);
             reference.advance(&actuator, &load, step);
-            time = time.add(Double::new(step));
             worst = worst.max(difference(trajectory.state(), reference.state()));
         }
         assert_at_most(
@@ -155,17 +149,15 @@ fn energy_given_by_a_sequence_of_inputs_stays_over_a_million_units_of_time() {
         if !orbits {
             trajectory = trajectory.without_orbits();
         }
-        let mut time = Double::ZERO;
         for last in [false, false, false, false, true] {
             let mut load = Load::constant(random.between(0.2, 0.6), random.between(-0.5, 0.5));
             if last {
                 load = Load::constant(0.0, 0.0);
             }
             let step = random.between(5.0, 20.0);
-            trajectory.restart(time);
+            trajectory.restart();
             advance(&mut trajectory, &motion(&actuator, &load), step);
             reference.advance(&actuator, &load, step);
-            time = time.add(Double::new(step));
         }
         let motion = motion(&actuator, &Load::constant(0.0, 0.0));
         let [position, rate] = reference.state();

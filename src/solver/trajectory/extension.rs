@@ -4,7 +4,7 @@ use super::Trajectory;
 use crate::solver::collocation::{Diverged, Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
-use crate::solver::hop::Hop;
+use crate::solver::hop::{self, Hop};
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
 use crate::solver::pieces::{CAPACITY, Piece};
@@ -34,21 +34,24 @@ impl Trajectory {
 
     /// Makes the first step from the origin on in one hop, if that is possible.
     pub(super) fn hops<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
-        let hop = Hop {
-            time: self.origin,
-            state: self.start,
-            // Taken, so that a guess that leads nowhere is not made again.
-            f: self.last_f.take(),
-            length: step,
-            clear: self.clear(),
+        // Taken, so that a guess that leads nowhere is not made again.
+        let f = match self.last_f.take() {
+            Some(f) => f,
+            None => match hop::first_f(equation, &self.time, self.start, step) {
+                Some(f) => f,
+                None => return false,
+            },
         };
-        let end = hop.end(self.level, equation, self.control.repeated());
-        if let Some((state, f)) = end {
-            self.start = state;
-            self.last_f = Some(f).filter(|f| f.is_finite());
-            self.origin = self.origin.plus(step);
-        }
-        end.is_some()
+        let clear = self.clear();
+        let hop = Hop {
+            time: &self.time,
+            f,
+            length: step,
+            clear,
+        };
+        let control = self.control.repeated();
+        self.last_f = hop.take(self.level, equation, control, &mut self.start);
+        self.last_f.is_some()
     }
 
     /// The positions between which nothing happens.
@@ -87,7 +90,7 @@ impl Trajectory {
         };
         // A single one takes longer with 16 nodes.
         let single = || {
-            let local = equation.at(way.begin);
+            let local = equation.at(&way.begin);
             target.since(begin) * local.natural_frequency(way.state) < 1.0
         };
         let few = control.is_loose() || self.restless && single();
@@ -118,7 +121,7 @@ impl Trajectory {
             Some(piece) => piece.segment.end(),
             None => self.start,
         };
-        let local = equation.at(self.origin.add(begin));
+        let local = equation.at(&self.origin.add(begin));
         if autonomous && self.pieces.count() == 0 && state.rate == 0.0 {
             self.first_turn = Some(Double::ZERO);
             self.at_rest = local.acceleration_from(state) == 0.0;

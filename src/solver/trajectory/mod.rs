@@ -37,7 +37,9 @@ pub struct Trajectory {
     level: Level,
     control: StepControl,
     limits: Limits,
-    /// Time of the model at which the first piece begins.
+    /// Present time of the model: all steps summed up.
+    time: Double,
+    /// Time of the model at which the first piece begins; of no meaning without one.
     origin: Double,
     /// State at the origin.
     start: State,
@@ -84,6 +86,7 @@ impl Trajectory {
             level: Level::new(),
             control: StepControl::new(tolerance),
             limits,
+            time,
             origin: time,
             start,
             pieces: Pieces::none(),
@@ -141,8 +144,19 @@ impl Trajectory {
         self
     }
 
-    /// Starts anew from the present state at `time`: the equation has changed.
-    pub fn restart(&mut self, time: Double) {
+    /// The present time of the model.
+    #[must_use]
+    pub fn time(&self) -> &Double {
+        &self.time
+    }
+
+    /// Lets time pass in which nothing moves.
+    pub fn wait(&mut self, time: Double) {
+        self.time = self.time.add(time);
+    }
+
+    /// Starts anew from the present state: the equation has changed.
+    pub fn restart(&mut self) {
         self.restless = self.advances == 1;
         self.advances = 0;
         self.strides.restart();
@@ -150,18 +164,18 @@ impl Trajectory {
         if self.pieces.count() > 0 {
             self.start = self.state();
         }
-        self.forget(time);
+        self.forget();
     }
 
     /// Forgets the motion so far, which has come to `state` at `time`.
     fn stand_at(&mut self, time: Double, state: State) {
         self.start = state;
-        self.forget(time);
+        self.origin = time;
+        self.forget();
     }
 
-    /// Forgets the motion up to `time`, at which it is at its start.
-    fn forget(&mut self, time: Double) {
-        self.origin = time;
+    /// Forgets the motion that has led to its start.
+    fn forget(&mut self) {
         self.pieces.clear();
         self.index = 0;
         self.now = Double::ZERO;
@@ -185,22 +199,40 @@ impl Trajectory {
         if step < self.slack {
             self.slack -= step;
             self.now = self.now.plus(self.direction * step);
+            self.time = self.time.plus(step);
             return Ok(Progress::Whole);
         }
-        if self.takes_strides && self.restless && self.advances == 1 && self.hops(equation, step) {
-            return Ok(Progress::Whole);
+        if self.takes_strides && self.restless && self.advances == 1 {
+            // First, since all that the next step does with the time waits for it.
+            let time = self.time.plus(step);
+            if self.hops(equation, step) {
+                self.time = time;
+                return Ok(Progress::Whole);
+            }
         }
-        self.advance_further(equation, step)
+        let progress = self.advance_further(equation, step);
+        let passed = match progress {
+            Ok(Progress::Whole) => step,
+            Ok(Progress::Stopped { after, .. }) => after,
+            Err(
+                Failure::SubstepTooShort { after, .. } | Failure::TooManySubsteps { after, .. },
+            ) => after,
+        };
+        self.time = self.time.plus(passed);
+        progress
     }
 
     /// The same where the present piece does not suffice: out of the way of the
-    /// steps for which it does, with its large frame.
+    /// steps for which it does, with its large frame. The time is left as it was.
     #[inline(never)]
     fn advance_further<E: Equation>(
         &mut self,
         equation: &E,
         step: f64,
     ) -> Result<Progress, Failure> {
+        if self.pieces.count() == 0 {
+            self.origin = self.time;
+        }
         if let Some(orbit) = self.orbit {
             self.run_orbit(orbit, step);
             return Ok(Progress::Whole);

@@ -25,6 +25,7 @@ impl Trajectory {
         let last = self.last_unseen();
         self.control.is_sound()
             && self.limits.are_sound()
+            && self.time.is_sound()
             && self.origin.is_sound()
             && self.recorded.is_sound()
             && first.is_none_or(|piece| piece.segment.begins_in(self.start))
