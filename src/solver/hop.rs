@@ -1,11 +1,12 @@
 //! Short steps, where the host changes the equation at each communication point.
 //!
-//! Nothing of the step before is of use then, and nothing of this one is kept but
-//! its end. A step that is short against the motion's own time needs no more
+//! Nothing of the step before is of use then but what f was in it, and nothing of this
+//! one is kept but its end. A step that is short against the motion's own time needs no more
 //! than 4 nodes, whose end is of order 8. They fit one register, so that, unlike in
 //! [`super::collocation`], nothing is gained by folding them into pairs.
 
 use fearless_simd::{Level, Simd, dispatch, f64x4};
+use serde::{Deserialize, Serialize};
 
 use super::collocation::{Closeness, product};
 use super::double::Double;
@@ -27,17 +28,50 @@ const MOST_SWEEPS: u32 = 16;
 pub struct Hop<'a> {
     /// Time of the model at its begin.
     pub time: &'a Double,
-    /// About what f is at its begin, such as what it was before the equation changed.
-    pub f: f64,
     /// How long it is.
     pub length: f64,
     /// Positions between which it may go.
     pub clear: (f64, f64),
 }
 
+/// What f was in the last hop, from which it is guessed what it will be in the next one:
+/// hosts mostly take equal steps, along which they change the equation smoothly.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Trend {
+    /// f at the end.
+    end: f64,
+    /// By how much it had risen.
+    rise: f64,
+    /// By how much it had jumped at the begin, where the equation changed.
+    jump: f64,
+}
+
+impl Trend {
+    /// f in a hop of which nothing is known but its begin; nothing where it is too long.
+    #[inline(never)]
+    pub fn first<E: Equation>(
+        equation: &E,
+        time: &Double,
+        state: State,
+        length: f64,
+    ) -> Option<Trend> {
+        let local = equation.at(time);
+        part_of_time_scale(&local, state, length)?;
+        Some(Trend::constant(local.acceleration_from(state)))
+    }
+
+    fn constant(f: f64) -> Trend {
+        Trend {
+            end: f,
+            rise: 0.0,
+            jump: 0.0,
+        }
+    }
+}
+
 impl Hop<'_> {
-    /// Moves the state to its end and returns f there; nothing where it is too long or
-    /// does not stay between the clear positions.
+    /// Moves the state to its end and tells what f was. False where it is too long or
+    /// does not stay between the clear positions; then nothing has changed.
     ///
     /// The state is changed where it lies, since the next hop waits for it: each time it is
     /// handed on in memory is a tenth of a sweep.
@@ -47,9 +81,10 @@ impl Hop<'_> {
         equation: &E,
         control: StepControl,
         state: &mut State,
-    ) -> Option<f64> {
+        trend: &mut Trend,
+    ) -> bool {
         // All of it, since what is not done in lanes takes as many instructions.
-        dispatch!(level, simd => self.take_with(simd, equation, control, state))
+        dispatch!(level, simd => self.take_with(simd, equation, control, state, trend).is_some())
     }
 
     #[inline(always)]
@@ -59,7 +94,8 @@ impl Hop<'_> {
         equation: &E,
         control: StepControl,
         state: &mut State,
-    ) -> Option<f64> {
+        trend: &mut Trend,
+    ) -> Option<()> {
         let local = equation.at(self.time);
         let scale = state.position.abs();
         let mut part = f64::NAN;
@@ -67,14 +103,20 @@ impl Hop<'_> {
             part = part_of_time_scale(&local, *state, self.length)?;
             Some(control.closeness(scale, part))
         };
-        let solved = solve(simd, &local, *state, self.length, self.f, closeness)?;
+        let solved = solve(simd, &local, *state, self.length, trend, closeness)?;
         let good = solved.stays_between(self.clear, *state)
             && solved.is_within(control.settled_within(part) * scale, part);
         if !good {
             return None;
         }
+        let [begin, end] = solved.f;
         *state = solved.end;
-        Some(solved.last_f)
+        *trend = Trend {
+            end,
+            rise: end - begin,
+            jump: begin - trend.end,
+        };
+        Some(())
     }
 }
 
@@ -87,20 +129,13 @@ fn part_of_time_scale<L: LocalEquation>(local: &L, state: State, length: f64) ->
     (part < SHORT && turns <= std::f64::consts::PI).then_some(part)
 }
 
-/// f at the begin of a hop, of which nothing is known; nothing where it is too long.
-#[inline(never)]
-pub fn first_f<E: Equation>(equation: &E, time: &Double, state: State, length: f64) -> Option<f64> {
-    let local = equation.at(time);
-    part_of_time_scale(&local, state, length).map(|_| local.acceleration_from(state))
-}
-
 /// A hop that has been solved.
 #[derive(Clone, Copy, Debug)]
 struct Solved {
     /// The state at its end.
     end: State,
-    /// f there.
-    last_f: f64,
+    /// f at its begin and there.
+    f: [f64; 2],
     /// By how much the Legendre coefficients of f, degree by degree, can move the
     /// position: their size times the square of half the length.
     size: [f64; 4],
@@ -133,15 +168,15 @@ impl Solved {
     }
 }
 
-/// Solves a hop; `f` is what it is about at the begin, `closeness` how closely to solve
-/// it, if it is to be solved at all. Nothing where the iteration does not converge.
+/// Solves a hop after one with this `trend`; `closeness` is how closely to solve it, if it
+/// is to be solved at all. Nothing where the iteration does not converge.
 #[inline(always)]
 fn solve<S: Simd, L: LocalEquation>(
     simd: S,
     equation: &L,
     start: State,
     length: f64,
-    f: f64,
+    trend: &Trend,
     mut closeness: impl FnMut() -> Option<Closeness>,
 ) -> Option<Solved> {
     let half = 0.5 * length;
@@ -152,8 +187,11 @@ fn solve<S: Simd, L: LocalEquation>(
     let offset = place * fill(half);
     let load = equation.load(offset);
     let line = offset.mul_add(fill(start.rate), fill(start.position));
-    let gain = offset * fill(f);
-    let mut bent = offset * gain * fill(0.5);
+    // Of an f that rises evenly.
+    let first = trend.end + trend.jump;
+    let gain = offset * place.mul_add(fill(trend.rise * 0.25), fill(first));
+    let mut bent =
+        (offset * offset) * place.mul_add(fill(trend.rise * (1.0 / 12.0)), fill(first * 0.5));
     let mut position = line + bent;
     let mut rate = gain + fill(start.rate);
     let mut last_change = f64::INFINITY;
@@ -175,14 +213,14 @@ fn solve<S: Simd, L: LocalEquation>(
             Some(wanted) if wanted.is_reached(change, last_change, [change, last_change]) => {
                 let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
                 let added: f64x4<S> = product(simd, &GAUSS_4.end, &f);
-                let scale: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 0.0]);
+                let scale: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
                 let drift: f64x4<S> = Lanes::load(simd, &[length * start.rate, 0.0, 0.0, 0.0]);
                 let from: f64x4<S> = Lanes::load(simd, &[start.position, start.rate, 0.0, 0.0]);
-                let [position, rate, last_f, _] =
+                let [position, rate, last, first] =
                     Lanes::<S, 4>::store(added.mul_add(scale, drift) + from);
                 return Some(Solved {
                     end: State { position, rate },
-                    last_f,
+                    f: [first, last],
                     size: Lanes::<S, 4>::abs(series * fill(square)).store(),
                 });
             }
@@ -256,9 +294,9 @@ mod tests {
             let part = 0.1 + 0.4 * random(4);
             let length = part * time_scale;
             let closeness = || Some(StepControl::new(1e-13).closeness(1.0, 0.1));
-            let f = equation.acceleration_from(state);
+            let trend = Trend::constant(equation.acceleration_from(state));
             let solved = dispatch!(Level::new(), simd => {
-                solve(simd, &equation, state, length, f, closeness)
+                solve(simd, &equation, state, length, &trend, closeness)
             });
             let solved = solved.expect("it converges");
             let limits = Limits {

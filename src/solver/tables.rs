@@ -75,7 +75,7 @@ pub struct Unpaired {
     pub twice: Columns<4>,
     /// Legendre coefficients a_0 to a_3.
     pub series: Columns<4>,
-    /// At the end: the twice and the once integrated f, f itself, and 0.
+    /// The twice and the once integrated f at the end, f itself at the end and at the begin.
     pub end: Columns<4>,
 }
 
@@ -117,13 +117,13 @@ impl Unpaired {
         }
         let mut column = 0;
         while column < 4 {
-            // Each Legendre polynomial is 1 there.
+            // Legendre polynomials are 1 at the end, and 1 or −1 at the begin.
             let [zeroth, first, second, third] = unpaired.series[column];
             unpaired.end[column] = [
                 2.0 * (zeroth - first / 3.0),
                 2.0 * zeroth,
-                (zeroth + first) + (second + third),
-                0.0,
+                (zeroth + second) + (first + third),
+                (zeroth + second) - (first + third),
             ];
             column += 1;
         }
@@ -350,7 +350,8 @@ mod tests {
             assert!((last - 2.0_f64.powi(n)).abs() < 4e-15, "{n}");
             let mean = 2.0_f64.powi(n) / order;
             assert!((apply(series, 0) - mean).abs() < 4e-15, "{n}");
-            let by_hand = [4.0 * mean / next, 2.0 * mean, 2.0_f64.powi(n), 0.0];
+            let [first, last] = [0.0_f64, 2.0].map(|place| place.powi(n));
+            let by_hand = [4.0 * mean / next, 2.0 * mean, last, first];
             for (row, by_hand) in by_hand.into_iter().enumerate() {
                 assert!((apply(end, row) - by_hand).abs() < 8e-15, "{n}, {row}");
             }

@@ -4,7 +4,7 @@ use super::Trajectory;
 use crate::solver::collocation::{Diverged, Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
-use crate::solver::hop::{self, Hop};
+use crate::solver::hop::{Hop, Trend};
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
 use crate::solver::pieces::{CAPACITY, Piece};
@@ -34,24 +34,25 @@ impl Trajectory {
 
     /// Makes the first step from the origin on in one hop, if that is possible.
     pub(super) fn hops<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
-        // Taken, so that a guess that leads nowhere is not made again.
-        let f = match self.last_f.take() {
-            Some(f) => f,
-            None => match hop::first_f(equation, &self.time, self.start, step) {
-                Some(f) => f,
-                None => return false,
-            },
-        };
+        if self.trend.is_none() {
+            self.trend = Trend::first(equation, &self.time, self.start, step);
+        }
         let clear = self.clear();
+        let Some(trend) = &mut self.trend else {
+            return false;
+        };
         let hop = Hop {
             time: &self.time,
-            f,
             length: step,
             clear,
         };
         let control = self.control.repeated();
-        self.last_f = hop.take(self.level, equation, control, &mut self.start);
-        self.last_f.is_some()
+        let taken = hop.take(self.level, equation, control, &mut self.start, trend);
+        if !taken {
+            // So that a guess that leads nowhere is not made again.
+            self.trend = None;
+        }
+        taken
     }
 
     /// The positions between which nothing happens.

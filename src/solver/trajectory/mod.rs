@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::double::Double;
 use super::extremes::Extremes;
+use super::hop::Trend;
 use super::limits::{Limit, Limits};
 use super::orbit::Orbit;
 pub use super::outcome::{Failure, Progress};
@@ -67,8 +68,8 @@ pub struct Trajectory {
     /// The last start was good for a single advance: the host changes the
     /// equation at each communication point, and looking ahead is of no use.
     restless: bool,
-    /// f at the end of the last hop.
-    last_f: Option<f64>,
+    /// What f was in the last hop.
+    trend: Option<Trend>,
     /// Where communication points lie far apart.
     strides: Strides,
     /// How far the motion has swung, where that is recorded.
@@ -103,7 +104,7 @@ impl Trajectory {
             takes_strides: true,
             advances: 0,
             restless: false,
-            last_f: None,
+            trend: None,
             strides: Strides::NONE,
             extremes: None,
             recorded: Double::ZERO,
