@@ -55,7 +55,7 @@ impl Exchange {
     pub(super) fn is_sound(&self) -> bool {
         let State { position, rate } = self.state;
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        position.is_finite() && rate.is_finite() && self.time.is_sound() && collapsed.is_sound()
+        position.is_finite() && rate.is_finite() && self.time.is_finite() && collapsed.is_finite()
     }
 
     /// The limit that lies less than `tolerance`, relative to it, before the

@@ -45,7 +45,7 @@ impl Run {
         self.trajectory.is_sound()
             && self.trajectory.keeps_to(scene.limits, tolerance)
             && self.trajectory.extremes().is_some() == scene.record_extremes
-            && collapsed.is_sound()
+            && collapsed.is_finite()
     }
 
     /// The motion so far.

@@ -205,7 +205,7 @@ impl Trajectory {
         }
         if self.takes_strides && self.restless && self.advances == 1 {
             // First, since all that the next step does with the time waits for it.
-            let time = self.time.plus(step);
+            let time = self.time.plus(step).tightened();
             if self.hops(equation, step) {
                 self.time = time;
                 return Ok(Progress::Whole);
@@ -231,6 +231,7 @@ impl Trajectory {
         equation: &E,
         step: f64,
     ) -> Result<Progress, Failure> {
+        self.time = self.time.tightened();
         if self.pieces.count() == 0 {
             self.origin = self.time;
         }

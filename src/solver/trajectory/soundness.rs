@@ -16,7 +16,7 @@ impl Trajectory {
     #[must_use]
     pub fn is_sound(&self) -> bool {
         let inside = |time: &Double| {
-            time.is_sound() && time.since(Double::ZERO) >= 0.0 && time.since(self.end()) <= 0.0
+            time.is_finite() && time.since(Double::ZERO) >= 0.0 && time.since(self.end()) <= 0.0
         };
         let in_piece =
             |time: &Double| inside(time) && self.pieces.find(*time, self.index) == self.index;
@@ -25,9 +25,9 @@ impl Trajectory {
         let last = self.last_unseen();
         self.control.is_sound()
             && self.limits.are_sound()
-            && self.time.is_sound()
-            && self.origin.is_sound()
-            && self.recorded.is_sound()
+            && self.time.is_finite()
+            && self.origin.is_finite()
+            && self.recorded.is_finite()
             && first.is_none_or(|piece| piece.segment.begins_in(self.start))
             // No piece outlives a restart: a hop, which may come first then, looks at none.
             && (first.is_none() || self.advances > 0)
