@@ -55,7 +55,7 @@ impl Trend {
         state: State,
         length: f64,
     ) -> Option<Trend> {
-        let local = equation.at(time);
+        let local = equation.seen_from(time);
         part_of_time_scale(&local, state, length)?;
         Some(Trend::constant(local.acceleration_from(state)))
     }
@@ -290,7 +290,7 @@ mod tests {
                 position: 0.7 + random(2),
                 rate: random(3) - 0.5,
             };
-            let time_scale = 1.0 / equation.natural_frequency(state);
+            let time_scale = equation.time_scale(state);
             let part = 0.1 + 0.4 * random(4);
             let length = part * time_scale;
             let closeness = || Some(StepControl::new(1e-13).closeness(1.0, 0.1));

@@ -56,6 +56,12 @@ pub trait Equation {
     /// The equation with the origin of time moved to `time`.
     fn at(&self, time: &Double) -> Self::Local<'_>;
 
+    /// The same in a function of its own, where a few nanoseconds count less than its size.
+    #[inline(never)]
+    fn seen_from(&self, time: &Double) -> Self::Local<'_> {
+        self.at(time)
+    }
+
     /// Whether f does not depend on t. Such an equation must also be
     /// conservative and even in x', f(x, x') = f(x, −x'): then its motion
     /// between two turning points is repeated for ever, there and back.
@@ -83,9 +89,15 @@ pub trait LocalEquation {
         4.0 * std::f64::consts::PI / self.load_frequency()
     }
 
-    /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly. Its
-    /// inverse is the time scale of the motion.
+    /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly.
     fn natural_frequency(&self, state: State) -> f64;
+
+    /// The time scale of the motion from here, the inverse of that; in a function of its own,
+    /// where a few nanoseconds count less than its size.
+    #[inline(never)]
+    fn time_scale(&self, state: State) -> f64 {
+        1.0 / self.natural_frequency(state)
+    }
 
     /// x'' in a state at the origin of time.
     #[inline(always)]

@@ -154,15 +154,15 @@ impl Strides {
     ) -> End {
         loop {
             let rest = way.target.since(way.now);
-            let local = equation.at(&way.time());
+            let local = equation.seen_from(&way.time());
             let longest = local.longest_substep();
             let few = P < MOST_PAIRS && way.now == Double::ZERO;
-            if few && longest.is_finite() && longest * local.natural_frequency(way.state) < 1.0 {
+            if few && longest.is_finite() && longest < local.time_scale(way.state) {
                 return End::Blocked;
             }
             let wanted = match self.length {
                 Some(length) => length,
-                None => 1.0 / local.natural_frequency(way.state),
+                None => local.time_scale(way.state),
             };
             let free = wanted.min(longest);
             let last = rest < 2.0 * free;

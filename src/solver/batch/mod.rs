@@ -176,8 +176,8 @@ impl<E: Equation> Course<'_, E> {
                 equation, start, ..
             } = self.motions.get(motion)?;
             self.next += 1;
-            let local = equation.at(&self.start);
-            let free = 1.0 / local.natural_frequency(*start);
+            let local = equation.seen_from(&self.start);
+            let free = local.time_scale(*start);
             // An orbit is followed faster alone, a fast drive needs more nodes.
             if equation.is_autonomous() || local.longest_substep() < free {
                 continue;
@@ -276,7 +276,7 @@ impl<E: Equation> Course<'_, E> {
                 lane.state,
                 offset,
             )?;
-            let local = equation.at(&time);
+            let local = equation.seen_from(&time);
             let correction = -state.rate / local.acceleration_from(state);
             // What is left out is of third order.
             if correction.abs() < near {

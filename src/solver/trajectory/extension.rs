@@ -91,8 +91,8 @@ impl Trajectory {
         };
         // A single one takes longer with 16 nodes.
         let single = || {
-            let local = equation.at(&way.begin);
-            target.since(begin) * local.natural_frequency(way.state) < 1.0
+            let local = equation.seen_from(&way.begin);
+            target.since(begin) < local.time_scale(way.state)
         };
         let few = control.is_loose() || self.restless && single();
         let (level, strides) = (self.level, &mut self.strides);
@@ -122,7 +122,7 @@ impl Trajectory {
             Some(piece) => piece.segment.end(),
             None => self.start,
         };
-        let local = equation.at(&self.origin.add(begin));
+        let local = equation.seen_from(&self.origin.add(begin));
         if autonomous && self.pieces.count() == 0 && state.rate == 0.0 {
             self.first_turn = Some(Double::ZERO);
             self.at_rest = local.acceleration_from(state) == 0.0;
@@ -178,7 +178,7 @@ impl Trajectory {
         let scale = state.position.abs();
         let free = match self.next_length {
             Some(length) => length,
-            None => FIRST_SUBSTEP / local.natural_frequency(state),
+            None => FIRST_SUBSTEP * local.time_scale(state),
         };
         let most = most.min(local.longest_substep());
         let shortest = (SHORTEST * free).min(0.5 * most);
