@@ -85,7 +85,7 @@ fn a_forged_motion_is_not_sound() {
         (&plain, "/pieces/0/segment/even/0", 1e-3),
         (&plain, "/pieces/0/segment/odd/0", 1e-3),
         (&plain, "/now/high", 1e3),
-        (&plain, "/now/low", 1e-3),
+        (&plain, "/now/low", 1e3),
         (&plain, "/index", 1.0),
         (&plain, "/slack", 1e-3),
         (&plain, "/direction", 0.5),
