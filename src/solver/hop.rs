@@ -73,8 +73,8 @@ impl Hop<'_> {
     /// Moves the state to its end and tells what f was. False where it is too long or
     /// does not stay between the clear positions; then nothing has changed.
     ///
-    /// The state is changed where it lies, since the next hop waits for it: each time it is
-    /// handed on in memory is a tenth of a sweep.
+    /// The state is changed where it lies, since the next hop waits for it: handing it on
+    /// in memory takes a tenth of a sweep each time.
     pub fn take<E: Equation>(
         &self,
         level: Level,
