@@ -211,6 +211,10 @@ impl Trajectory {
                 return Ok(Progress::Whole);
             }
         }
+        if self.at_rest {
+            self.time = self.time.plus(step);
+            return Ok(Progress::Whole);
+        }
         let progress = self.advance_further(equation, step);
         let passed = match progress {
             Ok(Progress::Whole) => step,
@@ -219,7 +223,7 @@ impl Trajectory {
                 Failure::SubstepTooShort { after, .. } | Failure::TooManySubsteps { after, .. },
             ) => after,
         };
-        self.time = self.time.plus(passed);
+        self.time = self.time.plus(passed).tightened();
         progress
     }
 
@@ -231,15 +235,11 @@ impl Trajectory {
         equation: &E,
         step: f64,
     ) -> Result<Progress, Failure> {
-        self.time = self.time.tightened();
         if self.pieces.count() == 0 {
             self.origin = self.time;
         }
         if let Some(orbit) = self.orbit {
             self.run_orbit(orbit, step);
-            return Ok(Progress::Whole);
-        }
-        if self.at_rest {
             return Ok(Progress::Whole);
         }
         let mut target = self.now.plus(step);
