@@ -124,7 +124,7 @@ fuzz: $(INSTALLED)
 	-max_total_time=$(FUZZ_SECONDS) -timeout=20 -verbosity=0 -print_final_stats=1 \
 	-artifact_prefix=target/fuzz/$$target- || exit 1; done
 
-bench: $(INSTALLED) $(BENCHMARK_INSTALLED)
+bench: fmu $(BENCHMARK_INSTALLED)
 	$(call heading,Benchmark)
 	@$(CARGO) build --release --locked --manifest-path benchmark/Cargo.toml --target-dir target/benchmark
 	@$(PYTHON_IN_VENV) benchmark/bench.py target/benchmark/release/benchmark $(BENCH)

@@ -23,11 +23,13 @@ SKIPS_CASE = "d"
 """The actuator on which it is shown what skipping gains."""
 
 FIGURES = ROOT / "docs" / "figures"
+FMU = ROOT / "target" / "fmu" / "DielectricElastomerActuator.fmu"
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=Path)
+    parser.add_argument("--fmu", type=Path, default=FMU, help="the packed FMU")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--milliseconds", type=int, default=10, help="least time of a measurement")
     parser.add_argument("--scipy-rounds", type=int, default=1)
@@ -41,8 +43,8 @@ def arguments() -> argparse.Namespace:
 class Rivals:
     """What is there, and what is missing and why."""
 
-    def __init__(self, program: Path, folder: Path, van_der_pol: Path | None):
-        self.programs = [rust(program)]
+    def __init__(self, program: Path, fmu: Path, folder: Path, van_der_pol: Path | None):
+        self.programs = [rust(program, fmu, folder)]
         self.versions = {"Rust rivals": self.programs[0].version}
         self.missing: dict[str, str] = {}
         self.heyoka = self.scipy = None
@@ -98,6 +100,7 @@ def settings(options, rivals: Rivals) -> dict[str, str]:
         "least time of a measurement": f"{options.milliseconds} ms",
         "error": "largest of stretch and rate at the times of the reference",
         "Rust side": "opt-level 3, lto fat, codegen-units 1; no target-cpu beyond the environment's RUSTFLAGS",
+        "communication steps": "the binary of the packed FMU",
         "C side": " ".join(C_FLAGS),
         "heyoka compiles": (
             f"{min(compiled):.2f} to {max(compiled):.2f} s each, not counted; time of an idle call taken off"
@@ -129,7 +132,7 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
 def main() -> None:
     options = arguments()
     with tempfile.TemporaryDirectory() as folder:
-        rivals = Rivals(options.program, Path(folder), options.van_der_pol)
+        rivals = Rivals(options.program, options.fmu, Path(folder), options.van_der_pol)
         for name, reason in rivals.missing.items():
             print(f"missing: {name}: {reason}")
         facts = records.machine()

@@ -6,8 +6,11 @@ import csv
 import os
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
+
+import fmpy
 
 from cases import HERE, Case
 
@@ -27,23 +30,33 @@ class Missing(Exception):
 class Program:
     """A program that times its methods once on one case and prints rows."""
 
-    def __init__(self, path: Path, version: str):
+    def __init__(self, path: Path, version: str, *always: str):
         self._path = path
+        self._always = always
         self.version = version
 
     def rows(self, pattern: str, case: Case, milliseconds: int, *more: str) -> Iterator[dict]:
-        command = [str(self._path), pattern, f"milliseconds={milliseconds}", *case.arguments(), *more]
+        about = (*case.arguments(), *self._always, *more)
+        command = [str(self._path), pattern, f"milliseconds={milliseconds}", *about]
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode != 0:
             raise SystemExit(f"{self._path.name} {pattern}, case {case.name}: {done.stderr.strip()[-2000:]}")
         yield from csv.DictReader(done.stdout.splitlines(), fieldnames=FIELDS)
 
 
-def rust(path: Path) -> Program:
-    """The Rust side with the versions of the rivals in its lock file."""
-    if not path.is_file():
-        raise SystemExit(f"{path} is missing; run make bench, which builds it")
-    return Program(path, ", ".join(_locked("ode_solvers", "differential-equations", "diffsol")))
+def rust(path: Path, fmu: Path, folder: Path) -> Program:
+    """The Rust side with the versions of the rivals in its lock file.
+
+    It calls the binary of the packed `fmu`, which is unpacked into the `folder`.
+    """
+    for needed in (path, fmu):
+        if not needed.is_file():
+            raise SystemExit(f"{needed} is missing; run make bench, which builds it")
+    binary = f"binaries/{fmpy.platform}/{fmu.stem}{fmpy.sharedLibraryExtension}"
+    with zipfile.ZipFile(fmu) as archive:
+        library = archive.extract(binary, folder)
+    versions = ", ".join(_locked("ode_solvers", "differential-equations", "diffsol"))
+    return Program(path, versions, f"fmu={library}")
 
 
 def _locked(*names: str) -> Iterator[str]:

@@ -2,6 +2,8 @@
 
 use std::collections::HashMap;
 
+use crate::fmu::Fmu;
+
 /// Position and rate.
 pub type Pair = [f64; 2];
 
@@ -19,6 +21,8 @@ pub struct Case {
     /// Times of the reference without the start.
     pub times: Vec<f64>,
     pub exact: Vec<Pair>,
+    /// The packed FMU.
+    pub fmu: &'static Fmu,
 }
 
 impl Case {
@@ -45,6 +49,7 @@ impl Case {
             frequency: number("omega_ac"),
             times,
             exact,
+            fmu: Box::leak(Box::new(Fmu::load(&arguments["fmu"]))),
         }
     }
 

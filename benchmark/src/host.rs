@@ -1,39 +1,14 @@
 //! A host of the FMI functions: what a simulation tool does, without the tool.
 
 use std::ffi::{CString, c_char, c_void};
-use std::hint::black_box;
 use std::ptr::{null, null_mut};
 
-use dielectric_elastomer_actuator::abi;
 use dielectric_elastomer_actuator::description::GUID;
 use dielectric_elastomer_actuator::variables::value_reference;
-use fmi::fmi2::binding::{
-    fmi2CallbackFunctions, fmi2Component, fmi2Real, fmi2Status, fmi2Status_fmi2OK,
-    fmi2Type_fmi2CoSimulation, fmi2ValueReference,
-};
+use fmi::fmi2::binding::{fmi2CallbackFunctions, fmi2Component, fmi2Status, fmi2Status_fmi2OK};
 
 use crate::case::Case;
-
-pub type DoStep = unsafe extern "C" fn(fmi2Component, fmi2Real, fmi2Real, i32) -> fmi2Status;
-pub type GetReal = unsafe extern "C" fn(
-    fmi2Component,
-    *const fmi2ValueReference,
-    usize,
-    *mut fmi2Real,
-) -> fmi2Status;
-type SetReal = unsafe extern "C" fn(
-    fmi2Component,
-    *const fmi2ValueReference,
-    usize,
-    *const fmi2Real,
-) -> fmi2Status;
-type SetDerivatives = unsafe extern "C" fn(
-    fmi2Component,
-    *const fmi2ValueReference,
-    usize,
-    *const i32,
-    *const fmi2Real,
-) -> fmi2Status;
+use crate::fmu::Fmu;
 
 unsafe extern "C" fn silent(
     _environment: *mut c_void,
@@ -72,13 +47,10 @@ pub fn callbacks() -> fmi2CallbackFunctions {
     }
 }
 
-/// An instance in step mode, called through pointers as in a shared library.
+/// An instance of the packed FMU in step mode.
 pub struct Host {
+    fmu: &'static Fmu,
     component: fmi2Component,
-    do_step: DoStep,
-    get_real: GetReal,
-    set_real: SetReal,
-    set_derivatives: SetDerivatives,
     /// Callbacks must live as long as the instance.
     _callbacks: Box<fmi2CallbackFunctions>,
     phi: u32,
@@ -93,27 +65,13 @@ impl Host {
     /// An initialized instance. Without `built_in` the alternating voltage is
     /// left to the caller.
     pub fn new(case: &Case, tolerance: f64, built_in: bool) -> Host {
+        let fmu = case.fmu;
         let guid = CString::new(GUID).expect("no NUL");
         let callbacks = Box::new(callbacks());
-        // SAFETY: all pointers live during the call, the callbacks longer.
-        let component = unsafe {
-            abi::fmi2Instantiate(
-                c"actuator".as_ptr(),
-                fmi2Type_fmi2CoSimulation,
-                guid.as_ptr(),
-                null(),
-                &*callbacks,
-                0,
-                0,
-            )
-        };
-        assert!(!component.is_null());
+        let component = fmu.instance(&guid, &callbacks);
         let host = Host {
+            fmu,
             component,
-            do_step: black_box(abi::fmi2DoStep as DoStep),
-            get_real: black_box(abi::fmi2GetReal as GetReal),
-            set_real: black_box(abi::fmi2SetReal as SetReal),
-            set_derivatives: black_box(abi::fmi2SetRealInputDerivatives as SetDerivatives),
             _callbacks: callbacks,
             phi: reference("phi"),
             outputs: [reference("lambda"), reference("lambda_dot")],
@@ -130,15 +88,15 @@ impl Host {
             ("omega_ac", case.frequency),
         ] {
             // SAFETY: a live component and one value.
-            let status = unsafe { abi::fmi2SetReal(component, &reference(name), 1, &value) };
+            let status = unsafe { (fmu.set_real)(component, &reference(name), 1, &value) };
             assert_eq!(status, fmi2Status_fmi2OK, "{name}");
         }
         // SAFETY: a live component.
         let statuses = unsafe {
             [
-                abi::fmi2SetupExperiment(component, 1, tolerance, 0.0, 0, 0.0),
-                abi::fmi2EnterInitializationMode(component),
-                abi::fmi2ExitInitializationMode(component),
+                (fmu.setup)(component, 1, tolerance, 0.0, 0, 0.0),
+                (fmu.enter_initialization)(component),
+                (fmu.exit_initialization)(component),
             ]
         };
         assert_eq!(statuses, [fmi2Status_fmi2OK; 3]);
@@ -148,7 +106,7 @@ impl Host {
     #[inline]
     pub fn step(&self, time: f64, step: f64) {
         // SAFETY: a live component.
-        let status = unsafe { (self.do_step)(self.component, time, step, 1) };
+        let status = unsafe { (self.fmu.do_step)(self.component, time, step, 1) };
         assert!(status == fmi2Status_fmi2OK);
     }
 
@@ -157,7 +115,7 @@ impl Host {
     pub fn stretch(&self) -> f64 {
         let mut value = 0.0;
         // SAFETY: a live component and one value.
-        unsafe { (self.get_real)(self.component, &self.outputs[0], 1, &mut value) };
+        unsafe { (self.fmu.get_real)(self.component, &self.outputs[0], 1, &mut value) };
         value
     }
 
@@ -167,7 +125,7 @@ impl Host {
         assert!(references.len() <= values.len());
         // SAFETY: a live component, and room for the values.
         unsafe {
-            (self.get_real)(
+            (self.fmu.get_real)(
                 self.component,
                 references.as_ptr(),
                 references.len(),
@@ -179,7 +137,7 @@ impl Host {
     /// Switches the log on.
     pub fn log(&self) {
         // SAFETY: a live component.
-        let status = unsafe { abi::fmi2SetDebugLogging(self.component, 1, 0, null()) };
+        let status = unsafe { (self.fmu.set_debug_logging)(self.component, 1, 0, null()) };
         assert!(status == fmi2Status_fmi2OK);
     }
 
@@ -188,7 +146,7 @@ impl Host {
         let mut values = [0.0; 2];
         // SAFETY: a live component and two values.
         unsafe {
-            (self.get_real)(
+            (self.fmu.get_real)(
                 self.component,
                 self.outputs.as_ptr(),
                 2,
@@ -203,10 +161,10 @@ impl Host {
     pub fn set(&self, derivatives: &[f64; 4], order: usize) {
         // SAFETY: a live component and one value; then `order` of each.
         unsafe {
-            (self.set_real)(self.component, &self.phi, 1, &derivatives[0]);
+            (self.fmu.set_real)(self.component, &self.phi, 1, &derivatives[0]);
             if order > 0 {
                 let references = [self.phi; 3];
-                (self.set_derivatives)(
+                (self.fmu.set_derivatives)(
                     self.component,
                     references.as_ptr(),
                     order,
@@ -221,6 +179,6 @@ impl Host {
 impl Drop for Host {
     fn drop(&mut self) {
         // SAFETY: freed once.
-        unsafe { abi::fmi2FreeInstance(self.component) };
+        unsafe { (self.fmu.free)(self.component) };
     }
 }

@@ -3,9 +3,11 @@
 //!
 //! ```text
 //! benchmark free|steps|van_der_pol|skips milliseconds=10 c=100 gamma_s=… reference=case_a.csv
+//!     fmu=DielectricElastomerActuator.so
 //! ```
 
 mod case;
+mod fmu;
 mod free;
 mod host;
 mod ours;

@@ -4,11 +4,12 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use crate::case::{Case, Pair};
+use crate::fmu::Fmu;
 use crate::host::Host;
 use crate::rivals::one_step;
 use crate::row::Row;
 use crate::timing::{BATCHES, median};
-use crate::van_der_pol::VanDerPol;
+use crate::van_der_pol::Oscillator;
 
 const STEPS: [f64; 5] = [0.001, 0.01, 0.1, 1.0, 10.0];
 
@@ -133,10 +134,10 @@ pub fn run(case: &Case, least: Duration) {
 
 /// Times the FMU of another equation in the same pattern, loaded from its `library`.
 pub fn van_der_pol(case: &Case, library: &str, least: Duration) {
-    let library = VanDerPol::load(library);
+    let fmu = Fmu::load(library);
     for step in STEPS {
         let plan = Plan::new(case, step);
-        let fresh = || library.start();
+        let fresh = || Oscillator::start(&fmu);
         let read = plan.time(least, fresh, |oscillator, call| {
             oscillator.step(call as f64 * step, step);
             black_box(oscillator.displacement());
