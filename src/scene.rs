@@ -80,10 +80,7 @@ impl Equation for Scene {
 
     #[inline(always)]
     fn at(&self, time: &Double) -> LocalMotion<'_> {
-        LocalMotion {
-            coefficients: Coefficients::fold(&self.parameters),
-            drive: self.drive.at(time),
-        }
+        LocalMotion::new(Coefficients::fold(&self.parameters), &self.drive, time)
     }
 
     fn is_autonomous(&self) -> bool {

@@ -90,10 +90,7 @@ impl Equation for Motion {
 
     #[inline(always)]
     fn at(&self, time: &Double) -> LocalMotion<'_> {
-        LocalMotion {
-            coefficients: self.coefficients,
-            drive: self.drive.at(time),
-        }
+        LocalMotion::new(self.coefficients, &self.drive, time)
     }
 
     fn is_autonomous(&self) -> bool {
@@ -104,8 +101,23 @@ impl Equation for Motion {
 /// A [`Motion`] with its origin of time moved.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalMotion<'a> {
-    pub(crate) coefficients: Coefficients,
-    pub(crate) drive: LocalDrive<'a>,
+    coefficients: Coefficients,
+    drive: LocalDrive<'a>,
+}
+
+impl LocalMotion<'_> {
+    /// The motion of an actuator with these coefficients under a drive, seen from `time`.
+    #[inline(always)]
+    pub(crate) fn new<'a>(
+        coefficients: Coefficients,
+        drive: &'a Drive,
+        time: &Double,
+    ) -> LocalMotion<'a> {
+        LocalMotion {
+            coefficients,
+            drive: drive.at(time),
+        }
+    }
 }
 
 impl LocalEquation for LocalMotion<'_> {
