@@ -86,4 +86,9 @@ impl Equation for Scene {
     fn is_autonomous(&self) -> bool {
         self.drive.is_constant()
     }
+
+    /// Eq. 16 is that of a Hamiltonian (Eq. 18), with x' in it squared.
+    fn is_time_reversible(&self) -> bool {
+        true
+    }
 }

@@ -4,10 +4,11 @@
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::motion::{Load, energy};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
-use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
+use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Trajectory};
+use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, State};
 use proptest::prelude::*;
 
 const REST: State = State {
@@ -233,6 +234,83 @@ fn rest_at_an_equilibrium_stays_and_wakes() {
     trajectory.restart();
     advance(&mut trajectory, &direct([0.0; 3], 0.3, 0.0), 10.0);
     assert!(trajectory.position() > 1.0);
+}
+
+/// x'' = 1 − x − x'/5: autonomous, but not reversible.
+struct Damped;
+
+impl Equation for Damped {
+    type Local<'a> = Damped;
+
+    fn at(&self, _time: &Double) -> Damped {
+        Damped
+    }
+
+    fn is_autonomous(&self) -> bool {
+        true
+    }
+}
+
+impl LocalEquation for Damped {
+    type Load<N: Number> = ();
+
+    fn load<N: Number>(&self, _offset: N) {}
+
+    fn acceleration<N: Number>(&self, (): (), x: N, rate: N) -> N {
+        x.same(1.0) - x - rate * rate.same(0.2)
+    }
+
+    fn load_frequency(&self) -> f64 {
+        0.0
+    }
+
+    fn natural_frequency(&self, _state: State) -> f64 {
+        1.0
+    }
+}
+
+#[test]
+fn a_damped_motion_is_not_run_there_and_back() {
+    let start = State {
+        position: 1.5,
+        rate: 0.0,
+    };
+    let decay = 0.1_f64;
+    let frequency = (1.0 - decay * decay).sqrt();
+    for step in [0.3, 7.0] {
+        let mut trajectory = Trajectory::new(start, Double::ZERO, LIMITS, 1e-10);
+        for k in 1..=40 {
+            assert_eq!(trajectory.advance(&Damped, step), Ok(Progress::Whole));
+            let time = step * f64::from(k);
+            let (sine, cosine) = (frequency * time).sin_cos();
+            let exact = 1.0 + 0.5 * (-decay * time).exp() * (cosine + decay / frequency * sine);
+            let error = (trajectory.position() - exact).abs();
+            assert!(error < 1e-9, "{error} after {time} in steps of {step}");
+        }
+    }
+}
+
+#[test]
+fn a_damped_motion_rests_where_all_derivatives_vanish_only() {
+    let turn = |rate| State {
+        position: 1.0,
+        rate,
+    };
+    let mut resting = Trajectory::new(turn(0.0), Double::ZERO, LIMITS, 1e-10);
+    assert_eq!(resting.advance(&Damped, 1e3), Ok(Progress::Whole));
+    assert_eq!(resting.state(), turn(0.0));
+    // x'' vanishes here too, but x' does not.
+    let mut passing = Trajectory::new(
+        State {
+            position: 0.98,
+            ..turn(0.1)
+        },
+        Double::ZERO,
+        LIMITS,
+        1e-10,
+    );
+    assert_eq!(passing.advance(&Damped, 0.5), Ok(Progress::Whole));
+    assert!(passing.position() > 1.0);
 }
 
 #[test]

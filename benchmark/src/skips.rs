@@ -287,6 +287,10 @@ impl Equation for Unfolded {
     fn is_autonomous(&self) -> bool {
         self.motion.is_autonomous()
     }
+
+    fn is_time_reversible(&self) -> bool {
+        self.motion.is_time_reversible()
+    }
 }
 
 impl LocalEquation for LocalUnfolded<'_> {
@@ -335,6 +339,10 @@ impl Equation for Ideal {
 
     fn is_autonomous(&self) -> bool {
         self.0.is_autonomous()
+    }
+
+    fn is_time_reversible(&self) -> bool {
+        self.0.is_time_reversible()
     }
 }
 

@@ -96,6 +96,11 @@ impl Equation for Motion {
     fn is_autonomous(&self) -> bool {
         self.drive.is_constant()
     }
+
+    /// Eq. 16 is that of a Hamiltonian (Eq. 18), with x' in it squared.
+    fn is_time_reversible(&self) -> bool {
+        true
+    }
 }
 
 /// A [`Motion`] with its origin of time moved.

@@ -62,10 +62,19 @@ pub trait Equation {
         self.at(time)
     }
 
-    /// Whether f does not depend on t. Such an equation must also be
-    /// conservative and even in x', f(x, x') = f(x, −x'): then its motion
-    /// between two turning points is repeated for ever, there and back.
+    /// Whether f does not depend on t.
     fn is_autonomous(&self) -> bool;
+
+    /// Whether the motion run backwards in time is a motion too: f is conservative and even
+    /// in x', f(x, x') = f(x, −x'). Damping is neither.
+    fn is_time_reversible(&self) -> bool {
+        false
+    }
+
+    /// Whether the motion between two turning points is repeated for ever, there and back.
+    fn repeats(&self) -> bool {
+        self.is_autonomous() && self.is_time_reversible()
+    }
 }
 
 /// An [`Equation`] with its origin of time moved to the begin of a substep.

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::double::Double;
 use super::segment::ROUNDING;
 
-/// The motion between two turning points of an autonomous, reversible equation.
+/// The motion between two turning points of an autonomous, time-reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Orbit {
     first_turn: Double,

@@ -179,7 +179,7 @@ impl<E: Equation> Course<'_, E> {
             let local = equation.seen_from(&self.start);
             let free = local.time_scale(*start);
             // An orbit is followed faster alone, a fast drive needs more nodes.
-            if equation.is_autonomous() || local.longest_substep() < free {
+            if equation.repeats() || local.longest_substep() < free {
                 continue;
             }
             let f = local.acceleration_from(*start);

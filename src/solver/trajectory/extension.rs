@@ -28,7 +28,7 @@ impl Trajectory {
         if self.restless && self.strides.reach(rest) {
             return true;
         }
-        let orbits = self.follows_orbits && equation.is_autonomous();
+        let orbits = self.follows_orbits && equation.repeats();
         !orbits && self.strides.are_shorter_than(rest)
     }
 
@@ -116,24 +116,28 @@ impl Trajectory {
     /// much the origin was moved.
     /// The error is the length of a substep that was too short to go on.
     pub(super) fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
-        let autonomous = self.follows_orbits && equation.is_autonomous();
+        let repeats = self.follows_orbits && equation.repeats();
         let begin = self.end();
         let state = match self.pieces.list().last() {
             Some(piece) => piece.segment.end(),
             None => self.start,
         };
         let local = equation.seen_from(&self.origin.add(begin));
-        if autonomous && self.pieces.count() == 0 && state.rate == 0.0 {
-            self.first_turn = Some(Double::ZERO);
-            self.at_rest = local.acceleration_from(state) == 0.0;
+        if self.pieces.count() == 0 && state.rate == 0.0 {
+            self.at_rest = self.follows_orbits
+                && equation.is_autonomous()
+                && local.acceleration_from(state) == 0.0;
             if self.at_rest {
                 return Ok(Double::ZERO);
             }
+            if repeats {
+                self.first_turn = Some(Double::ZERO);
+            }
         }
         let most = if self.restless { rest } else { f64::INFINITY };
-        let substep = self.substep(&local, state, autonomous, most)?;
+        let substep = self.substep(&local, state, repeats, most)?;
         // Pieces are kept only while an orbit may still come out of them.
-        let keep = autonomous && self.pieces.count() < CAPACITY;
+        let keep = repeats && self.pieces.count() < CAPACITY;
         let mut shift = Double::ZERO;
         if !keep {
             if self.extremes.is_some() && self.pieces.count() > 0 {
@@ -155,7 +159,7 @@ impl Trajectory {
             .first_contact(&mut segment, substep.reach())
             .map(|(limit, offset)| (limit, begin.plus(offset)));
         self.pieces.push(Piece { begin, segment });
-        if autonomous && self.stop.is_none() {
+        if repeats && self.stop.is_none() {
             self.look_for_turn(state.rate);
         }
         Ok(shift)
@@ -167,10 +171,10 @@ impl Trajectory {
         &mut self,
         local: &L,
         state: State,
-        autonomous: bool,
+        repeats: bool,
         most: f64,
     ) -> Result<Substep<PAIRS>, f64> {
-        let control = if autonomous || self.restless {
+        let control = if repeats || self.restless {
             self.control.repeated()
         } else {
             self.control

@@ -1,7 +1,7 @@
 //! The motion from a start onwards: substeps one after another, each answered
 //! from its polynomial as long as the caller stays inside it.
 //!
-//! Where the equation is autonomous, the pieces are kept until the motion has
+//! Where the motion repeats, the pieces are kept until the motion has
 //! turned twice. Between two turning points it then runs there and back for
 //! ever, so that no further substep is integrated, whatever the time asked for.
 
