@@ -9,6 +9,7 @@ BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
 EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
 HOSTS_INSTALLED := $(VENV)/installed-hosts
+PACKAGE_INSTALLED := $(VENV)/installed-package
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -25,11 +26,33 @@ FUZZ_TARGETS = calls state description
 FUZZ_SECONDS ?= 60
 HOST_TRIPLE = $(shell rustc -vV | sed -n 's/^host: //p')
 
+# The wheel is built from a copy of python/, to which what was built for it is added.
+WHEEL = target/wheel
+define build_wheel
+rm -rf $(WHEEL) && mkdir -p $(WHEEL)/source && cp Cargo.toml $(WHEEL) && \
+cp -R python/dielectric_actuator python/pyproject.toml python/README.md LICENSE-* $(WHEEL)/source && \
+mkdir $(WHEEL)/source/dielectric_actuator/data && \
+cp target/fmu/*.fmu $(WHEEL)/source/dielectric_actuator/data && \
+(cd $(WHEEL)/source && $(abspath $(PYTHON_IN_VENV)) -m hatchling build --target wheel --directory ..) && \
+rm -r $(WHEEL)/source $(WHEEL)/Cargo.toml && ls -l $(WHEEL)/*.whl
+endef
+
+# An environment with the wheel and nothing of the checkout, for its tests.
+WHEEL_ENV = target/wheel-environment
+define install_wheel
+[ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt requirements.txt ] || \
+{ $(PYTHON) -m venv --clear --without-pip $(WHEEL_ENV) && \
+cat requirements.txt examples/requirements.txt python/requirements.txt >$(WHEEL_ENV)/versions.txt && \
+$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --constraint $(WHEEL_ENV)/versions.txt \
+"$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest && touch $(WHEEL_ENV)/installed; } && \
+$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --force-reinstall --no-deps $(WHEEL)/*.whl
+endef
+
 heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all guide paper examples test test-platforms stress soak fuzz bench env clean
+.PHONY: help run fmu fmu-all wheel guide paper examples test test-platforms stress soak fuzz bench env clean
 
 help:
 	@echo 'make run             build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
@@ -43,13 +66,14 @@ help:
 	@echo 'make bench           time the actuator and its rivals (benchmark/README.md)'
 	@echo 'make fmu             build and pack the FMU only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
+	@echo 'make wheel           build the Python package for every platform into target/wheel'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
 	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
 	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean           remove target and .venv'
 	@echo 'PYTHON=...           the Python to use, 3.11 or later (default: python3)'
 
-run: fmu
+run: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Demonstration)
 	@$(PYTHON_IN_VENV) studies/demonstration.py
 
@@ -61,21 +85,25 @@ fmu-all: $(INSTALLED)
 	$(call heading,FMU for every platform)
 	@$(CARGO) fmu --all
 
+wheel: fmu-all $(PACKAGE_INSTALLED)
+	$(call heading,Wheel)
+	@$(call build_wheel)
+
 guide: $(INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu guide
 
-paper: fmu
+paper: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Paper)
 	@PYTHONPATH=studies $(PYTHON_IN_VENV) -m paper $(if $(WORKERS),--workers $(WORKERS)) $(PAPER)
 
-examples: fmu $(EXAMPLES_INSTALLED)
+examples: fmu $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	@rm -rf target/examples
 	@for example in $(EXAMPLES); do \
 	printf '\n==> examples/%s.py\n' $$example; \
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
-test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED)
+test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Format)
 	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
 	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
@@ -91,10 +119,15 @@ test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED)
 	@$(CARGO) test --workspace
 	$(call heading,FMPy tests)
 	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
+	$(call heading,Python package)
+	@$(PYTHON_IN_VENV) -m mypy --config-file python/pyproject.toml python/dielectric_actuator
+	@$(call build_wheel)
+	@$(call install_wheel)
+	@$(WHEEL_ENV)/bin/python -m pytest tests/package
 	$(call heading,Other hosts and memory checkers)
 	@$(PYTHON_IN_VENV) -m pytest tests/hosts
 
-test-platforms: fmu-all
+test-platforms: fmu-all $(PACKAGE_INSTALLED)
 	$(call heading,Tests of the platforms)
 	@env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest tests/platforms
 	@$(PYTHON_IN_VENV) -m pytest tests/fmpy/test_archive.py
@@ -103,7 +136,7 @@ stress: $(INSTALLED)
 	$(call heading,Stress tests)
 	@STRESS=long $(CARGO) test --test stress -- --show-output
 
-soak: fmu $(HOSTS_INSTALLED)
+soak: fmu $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Random calls)
 	@SOAK=long $(CARGO) test --test calls random:: -- --show-output
 	$(call heading,Memory and races)
@@ -152,6 +185,13 @@ $(INSTALLED): requirements.txt
 $(HOSTS_INSTALLED): tests/hosts/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of other hosts)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/hosts/requirements.txt
+	@touch $@
+
+# The Python package as it stands in the checkout, with the FMU of target/fmu.
+$(PACKAGE_INSTALLED): python/requirements.txt python/pyproject.toml $(INSTALLED)
+	$(call heading,Python package)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement python/requirements.txt
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --no-build-isolation --editable python
 	@touch $@
 
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)

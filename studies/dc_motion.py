@@ -5,7 +5,7 @@ from __future__ import annotations
 import figures
 import references
 import turning_points
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Comparison
 from pull_in_search import pull_in_bracket
 
@@ -40,7 +40,7 @@ def families_of(cases: list[references.SurfaceEffects]) -> dict[str, list[int]]:
     return lines
 
 
-def oscillations(actuator: ActuatorFmu, prestress: float, table: Comparison) -> dict[str, list[figures.Oscillation]]:
+def oscillations(actuator: Actuator, prestress: float, table: Comparison) -> dict[str, list[figures.Oscillation]]:
     """Responses of Fig. 2 or 3 to a voltage step for varied surface parameters; periods and turns go into `table`."""
     orbits = [orbit for orbit in references.dc_orbits() if orbit.case.S == prestress]
     span = 1.02 * 2 * max(orbit.period for orbit in orbits)
@@ -62,7 +62,7 @@ def oscillations(actuator: ActuatorFmu, prestress: float, table: Comparison) -> 
     }
 
 
-def pull_in(actuator: ActuatorFmu, table: Comparison) -> dict[str, list[figures.Transition]]:
+def pull_in(actuator: Actuator, table: Comparison) -> dict[str, list[figures.Transition]]:
     """The motion at both sides of the thresholds of Table 1, which go into `table`: found from the motion by
     bisection, and the FMU's own."""
     thresholds = references.table_1()

@@ -19,30 +19,30 @@ import figures
 import references
 import trajectories
 import turning_points
-from actuator_fmu import DEFAULT_FMU, ActuatorFmu
+from dielectric_actuator import Actuator, packed_fmu
 from comparison import Comparison
 from dc_motion import MOTION, PULL_IN_DISTANCE, TOLERANCE, oscillations, pull_in
 from progress import Progress
 
-DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "demonstration"
+DEFAULT_OUTPUT = Path(__file__).resolve().parents[1] / "target" / "demonstration"
 SECTION_POINTS = 15_000
 
 COMMUNICATION_STEPS = (0.01, 0.37, 1.0, 25.0)
 
 
-def dc_responses(actuator: ActuatorFmu, prestress: float, table: Comparison) -> figures.Figure:
+def dc_responses(actuator: Actuator, prestress: float, table: Comparison) -> figures.Figure:
     """The paper's Fig. 2 or 3: responses to a voltage step for varied surface parameters."""
     title = f"Response to a DC voltage step, {style.setting(phi=0.6, S=prestress)}"
     return figures.dc_responses(oscillations(actuator, prestress, table), title=title)
 
 
-def pull_in_transitions(actuator: ActuatorFmu, table: Comparison) -> figures.Figure:
+def pull_in_transitions(actuator: Actuator, table: Comparison) -> figures.Figure:
     """Table 1 of the paper: thresholds found from the motion, the FMU's own, and the motion at both sides."""
     title = "Just below and just above the dynamic pull-in voltage"
     return figures.pull_in_transitions(pull_in(actuator, table), distance=PULL_IN_DISTANCE, title=title)
 
 
-def driven(actuator: ActuatorFmu, table: Comparison) -> figures.Figure:
+def driven(actuator: Actuator, table: Comparison) -> figures.Figure:
     """One run under the FMU's built-in harmonic drive, near the paper's harmonic resonance."""
     reference = references.driven_amplitudes()[0]
     response = actuator.run(
@@ -73,7 +73,7 @@ def driven(actuator: ActuatorFmu, table: Comparison) -> figures.Figure:
     return figures.driven_response(response, section, amplitude=amplitude, title=title)
 
 
-def reference_trajectories(actuator: ActuatorFmu, table: Comparison) -> None:
+def reference_trajectories(actuator: Actuator, table: Comparison) -> None:
     """The multiprecision trajectories at very different communication steps, where they differ most."""
     for name, scene in references.TRAJECTORY_SCENES.items():
         values = " ".join(f"{variable}={value:g}" for variable, value in scene.items())
@@ -90,7 +90,7 @@ def reference_trajectories(actuator: ActuatorFmu, table: Comparison) -> None:
 def main() -> int:
     """Run all stages; 0 on success, 2 if there is no packed FMU."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the PNGs (%(default)s)")
     arguments = parser.parse_args()
     if not arguments.fmu.is_file():
@@ -101,7 +101,7 @@ def main() -> int:
     table = Comparison()
     progress = Progress(stages=6)
     drawn = {}
-    with ActuatorFmu(arguments.fmu) as actuator:
+    with Actuator(arguments.fmu) as actuator:
         with progress.stage("DC responses without prestress (Fig. 2)"):
             drawn["dc_without_prestress"] = dc_responses(actuator, 0.0, table)
         with progress.stage("DC responses with prestress (Fig. 3)"):

@@ -1,6 +1,6 @@
 """The figures drawn from responses of the actuator. Nothing here runs the FMU.
 
-A response is the structured array that `ActuatorFmu.run` returns, with λ₃, its rate and what
+A response is the structured array that `Actuator.run` returns, with λ₃, its rate and what
 `turning_points` needs.
 """
 

@@ -11,12 +11,12 @@ from __future__ import annotations
 
 import math
 
-from actuator_fmu import ActuatorFmu, Scene
+from dielectric_actuator import Actuator, Scene
 
 TOLERANCE = 1e-12
 
 
-def pulls_in(actuator: ActuatorFmu, scene: Scene, voltage: float, saddle_stretch: float) -> bool:
+def pulls_in(actuator: Actuator, scene: Scene, voltage: float, saddle_stretch: float) -> bool:
     """Whether the first rise from rest at a constant voltage passes `saddle_stretch` (= 1/sqrt(λ₃ᶜ)).
 
     Near the threshold the motion lingers at the saddle for a time that grows like ln(1/|φ − φᶜ|).
@@ -36,7 +36,7 @@ def pulls_in(actuator: ActuatorFmu, scene: Scene, voltage: float, saddle_stretch
 
 
 def pull_in_bracket(
-    actuator: ActuatorFmu,
+    actuator: Actuator,
     scene: Scene,
     saddle_stretch: float,
     *,

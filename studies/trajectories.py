@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import references
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 
 
 class Worst(NamedTuple):
@@ -21,7 +21,7 @@ class Worst(NamedTuple):
         return abs(self.measured - self.exact)
 
 
-def follow(actuator: ActuatorFmu, name: str, communication_step: float, tolerance: float | None) -> Worst:
+def follow(actuator: Actuator, name: str, communication_step: float, tolerance: float | None) -> Worst:
     """Run the scene of the reference `name` and compare at each of its times.
 
     A communication step that does not divide the time to the next row ends in one shorter step.

@@ -20,14 +20,15 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
+from dielectric_actuator import Actuator, packed_fmu
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style  # noqa: E402  (the path must be set first)
-from actuator_fmu import DEFAULT_FMU, ActuatorFmu  # noqa: E402
 from controllers import FeedForwardPI, Predictive  # noqa: E402
 from loop import RESERVE, SCENE, Run, Scenario, close_loop  # noqa: E402
 
-DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "examples" / "control"
+DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "control"
 CONTROLLERS = {"PI with feed-forward": FeedForwardPI, "predictive": Predictive}
 PERIOD = 1.0
 PERIODS = (0.5, 1.0, 2.0, 3.0, 4.0, 6.0)
@@ -129,12 +130,12 @@ def draw_sampling(sampled: dict[str, dict[float, Run]]) -> Figure:
 def main() -> None:
     """Close the loops, print, draw."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the plots (%(default)s)")
     parser.add_argument("--periods", type=float, nargs="+", default=PERIODS, help="sampling periods (%(default)s)")
     arguments = parser.parse_args()
     style.apply()
-    with ActuatorFmu(arguments.fmu) as plant, ActuatorFmu(arguments.fmu) as model:
+    with Actuator(arguments.fmu) as plant, Actuator(arguments.fmu) as model:
         sampled: dict[str, dict[float, Run]] = {}
         print(f"{'sampling period':<24}{'controller':<24}{'deviation':>12}{'us a control step':>20}")
         for period in sorted({*arguments.periods, PERIOD}):

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import expm
 from scipy.optimize import lsq_linear
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from quasi_static import squared_voltages
 
 Target = Callable[[float], float]
@@ -41,7 +41,7 @@ class FeedForwardPI:
     P, I, D = 4.0, 0.3, 25.0
     STRETCHES = np.linspace(0.95, 1.6, 66)
 
-    def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
+    def __init__(self, model: Actuator, scene: Mapping[str, float], target: Target, period: float):
         self._target, self._period = target, period
         self._curve = squared_voltages(model, scene, self.STRETCHES)
         self._integral = 0.0
@@ -81,7 +81,7 @@ class Predictive:
     LEAST = 1e-6
     """Of φ² in a plan: at 0 the derivative by φ vanishes, and with it that by φ² could not be told."""
 
-    def __init__(self, model: ActuatorFmu, scene: Mapping[str, float], target: Target, period: float):
+    def __init__(self, model: Actuator, scene: Mapping[str, float], target: Target, period: float):
         self._model, self._scene, self._target, self._period = model, dict(scene), target, period
         self._plan = np.full(max(2, math.ceil(self.HORIZON / period)), self.LEAST)
         self._prestress = scene["S"]

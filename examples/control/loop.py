@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from controllers import Measured, Target
 
 SCENE = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.0, "S": 0.2}
@@ -48,7 +48,7 @@ class Run:
 
 
 def close_loop(
-    plant: ActuatorFmu, model: ActuatorFmu, kind: type, scenario: Scenario, *, period: float, guarded: bool = True
+    plant: Actuator, model: Actuator, kind: type, scenario: Scenario, *, period: float, guarded: bool = True
 ) -> Run:
     """Run a controller of the given kind with the given sampling period.
 

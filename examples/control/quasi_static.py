@@ -10,10 +10,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 
 
-def squared_voltages(actuator: ActuatorFmu, scene: Mapping[str, float], stretches: np.ndarray) -> np.ndarray:
+def squared_voltages(actuator: Actuator, scene: Mapping[str, float], stretches: np.ndarray) -> np.ndarray:
     """φ² that holds each stretch in equilibrium; negative where no voltage does."""
     accelerations = np.empty((2, len(stretches)))
     for row, voltage in enumerate((0.0, 1.0)):

@@ -18,12 +18,13 @@ import numpy as np
 from fmpy import simulate_fmu
 from matplotlib.figure import Figure
 
+from dielectric_actuator import Actuator, packed_fmu
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style  # noqa: E402  (the path must be set first)
-from actuator_fmu import DEFAULT_FMU, ActuatorFmu  # noqa: E402
 
-DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "examples" / "lag"
+DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "lag"
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 AMPLITUDE, FREQUENCY = 0.3, 0.1
 PERIOD = 2 * math.pi / FREQUENCY
@@ -66,7 +67,7 @@ def held(fmu: Path, step: float) -> np.ndarray:
     return result["lambda"]
 
 
-def with_derivatives(actuator: ActuatorFmu, step: float, order: int) -> np.ndarray:
+def with_derivatives(actuator: Actuator, step: float, order: int) -> np.ndarray:
     """λ with the voltage and its derivatives up to `order` set at each communication point."""
     actuator.start(SURFACE_EFFECTS, tolerance=TOLERANCE)
     stretch = [actuator.get("lambda")]
@@ -78,14 +79,14 @@ def with_derivatives(actuator: ActuatorFmu, step: float, order: int) -> np.ndarr
     return np.array(stretch)
 
 
-def exact(actuator: ActuatorFmu, step: float) -> np.ndarray:
+def exact(actuator: Actuator, step: float) -> np.ndarray:
     """λ under the built-in drive of the same voltage."""
     scene = {**SURFACE_EFFECTS, "phi_ac": AMPLITUDE, "omega_ac": FREQUENCY}
     run = actuator.run(scene, stop_time=PERIODS * PERIOD, communication_step=step, tolerance=TOLERANCE)
     return run["lambda"]
 
 
-def errors(actuator: ActuatorFmu, fmu: Path) -> dict[str, list[float]]:
+def errors(actuator: Actuator, fmu: Path) -> dict[str, list[float]]:
     """Largest error of λ at the communication points, for each way and each number of steps in a period."""
     found: dict[str, list[float]] = {name: [] for name in ORDERS}
     for count in STEPS_IN_A_PERIOD:
@@ -97,7 +98,7 @@ def errors(actuator: ActuatorFmu, fmu: Path) -> dict[str, list[float]]:
     return found
 
 
-def draw_inputs(actuator: ActuatorFmu, fmu: Path, found: dict[str, list[float]]) -> Figure:
+def draw_inputs(actuator: Actuator, fmu: Path, found: dict[str, list[float]]) -> Figure:
     """The held voltage and its response beside the true ones; error against steps in a period."""
     count = 16
     step = PERIOD / count
@@ -136,7 +137,7 @@ def draw_inputs(actuator: ActuatorFmu, fmu: Path, found: dict[str, list[float]])
     return figure
 
 
-def pull_in(actuator: ActuatorFmu) -> dict[str, np.ndarray]:
+def pull_in(actuator: Actuator) -> dict[str, np.ndarray]:
     """One collapse, sampled coarsely with both settings of `on_pull_in`, and finely."""
     outputs = ("lambda", "pulled_in", "pull_in_time")
 
@@ -173,11 +174,11 @@ def draw_pull_in(runs: dict[str, np.ndarray]) -> Figure:
 def main() -> None:
     """Measure, print, draw."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the plots (%(default)s)")
     arguments = parser.parse_args()
     style.apply()
-    with ActuatorFmu(arguments.fmu) as actuator:
+    with Actuator(arguments.fmu) as actuator:
         found = errors(actuator, arguments.fmu)
         print(f"largest error of lambda, phi = {AMPLITUDE:g} sin({FREQUENCY:g} t), {PERIODS} periods")
         print("steps in a period  " + "".join(f"{name:>22}" for name in found))

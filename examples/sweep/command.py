@@ -9,12 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
-from sweep import DEFAULT_FMU, AnotherSweep, Unfinished, grid, sweep  # first, since it makes the studies importable
+
+from dielectric_actuator import packed_fmu
+from sweep import AnotherSweep, Unfinished, grid, sweep  # first, since it makes the studies importable
 
 import figure_style as style
 from scenes import Measure
 
-DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "examples" / "sweep"
+DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "sweep"
 
 
 def parse(description: str, **counts: int) -> argparse.Namespace:
@@ -22,7 +24,7 @@ def parse(description: str, **counts: int) -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=description.partition("\n")[0])
     parser.add_argument("--scheduler", help="address of a Dask scheduler (default: processes on this machine)")
     parser.add_argument("--workers", type=int, help="processes on this machine (default: one a core)")
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the results (%(default)s)")
     for name, count in counts.items():
         parser.add_argument(f"--{name}", type=int, default=count, help="values of this axis (%(default)s)")

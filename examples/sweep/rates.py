@@ -25,7 +25,7 @@ from scenes import frequency_response
 from sweep import grid, local_cluster, sweep
 
 import figure_style as style
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIMES = (2000.0, 50000.0)
@@ -66,7 +66,7 @@ def rates(fmu: Path, scenes: dict[str, np.ndarray], stop_time: float, most: int)
     plain = [plain_amplitude(fmu, row, stop_time) for row in sample]
     yield "simulate_fmu", len(sample) / (time.perf_counter() - start)
 
-    with ActuatorFmu(fmu) as actuator:
+    with Actuator(fmu) as actuator:
         measure(actuator, rows[0])
         start = time.perf_counter()
         found = [measure(actuator, row)["lambda3_amplitude"] for row in rows]

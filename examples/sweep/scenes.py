@@ -1,6 +1,6 @@
 """The worker's side of a sweep: one loaded actuator, reset between scenes.
 
-This file, with studies/actuator_fmu.py, is sent to each worker; it must import nothing else of the project.
+This file is sent to each worker; it must import nothing of the project but the installed package.
 A measure is a function ``(actuator, scene) -> results`` that runs one scene, given as start values by
 variable name, and returns its results by column name.
 """
@@ -13,10 +13,10 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from distributed import WorkerPlugin, get_worker
 
-Measure = Callable[[ActuatorFmu, Mapping[str, float]], Mapping[str, float]]
+Measure = Callable[[Actuator, Mapping[str, float]], Mapping[str, float]]
 
 _loaded = threading.local()
 
@@ -36,10 +36,10 @@ class CarryFmu(WorkerPlugin):
         worker.actuator_fmu = path
 
 
-def loaded_actuator(path: Path) -> ActuatorFmu:
+def loaded_actuator(path: Path) -> Actuator:
     """The actuator of this thread, loaded at its first scene and kept."""
     if getattr(_loaded, "path", None) != path:
-        _loaded.actuator, _loaded.path = ActuatorFmu(path), path
+        _loaded.actuator, _loaded.path = Actuator(path), path
     return _loaded.actuator
 
 
@@ -48,7 +48,7 @@ def run_batch(measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str
     return run_scenes(loaded_actuator(get_worker().actuator_fmu), measure, scenes)
 
 
-def run_scenes(actuator: ActuatorFmu, measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
+def run_scenes(actuator: Actuator, measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
     """Results of each scene in order; of one that fails, its reason under ``failure``."""
     results = []
     for scene in scenes:
@@ -60,7 +60,7 @@ def run_scenes(actuator: ActuatorFmu, measure: Measure, scenes: list[dict[str, f
     return results
 
 
-def frequency_response(actuator: ActuatorFmu, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
+def frequency_response(actuator: Actuator, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
     """Half the range of λ₃ from rest to `stop_time` (the paper's λ₃ᵃ), in a single communication step.
 
     The running extremes of the FMU are located exactly, so that nothing needs to be sampled.
@@ -76,7 +76,7 @@ def frequency_response(actuator: ActuatorFmu, scene: Mapping[str, float], *, sto
     }
 
 
-def pull_in(actuator: ActuatorFmu, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
+def pull_in(actuator: Actuator, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
     """Whether and when the actuator is pulled in before `stop_time`, and the thresholds beside it."""
     actuator.start({**scene, "record_extremes": True})
     actuator.advance(stop_time)

@@ -9,7 +9,7 @@ The scenes travel in batches. A batch that comes back is written at once, next t
 Parquet file; a sweep that was stopped goes on from these. The result holds one row a scene: its number,
 its parameters, its results, and the reason if it failed. The FMU and the modules that a worker needs
 (the one that defines the measure too) are sent to it, so that a worker on another machine needs only the
-packages of requirements.txt and examples/requirements.txt.
+package `dielectric_actuator` with its extra `sweep`.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ from distributed import Client, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 
+from dielectric_actuator import packed_fmu
+
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 sys.path.insert(0, str(STUDIES))
 
-import actuator_fmu  # noqa: E402  (the path must be set first)
 import scenes as worker_side  # noqa: E402
-from actuator_fmu import DEFAULT_FMU  # noqa: E402
 
 FINGERPRINT = b"sweep"
 BATCH = 100
@@ -66,7 +66,7 @@ def sweep(
     cluster: str | Cluster | None = None,
     workers: int | None = None,
     batch: int = BATCH,
-    fmu: Path = DEFAULT_FMU,
+    fmu: Path = packed_fmu(),
 ) -> pa.Table:
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
@@ -240,7 +240,7 @@ def local_cluster(workers: int | None) -> LocalCluster:
 def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
     """Give each worker, of now and later, the modules and the FMU."""
     own = inspect.getmodule(_unwrapped(measure)[0])
-    for module in dict.fromkeys((actuator_fmu, worker_side, own)):
+    for module in dict.fromkeys((worker_side, own)):
         if module.__name__ != "__main__":  # Dask sends a function of the script itself as code
             # a name of its own each time, as Client.upload_file does: what was sent last counts
             name = f"{module.__name__}-{uuid.uuid4()}"

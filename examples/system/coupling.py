@@ -15,7 +15,7 @@ import fmpy
 import numpy as np
 from fmpy.ssp.ssd import find_components, read_ssd, read_ssv
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 
 
 class Coupling:
@@ -26,7 +26,7 @@ class Coupling:
         system = read_ssd(str(ssp)).system
         # the runner of the actuator serves any co-simulation FMU
         self.units = {
-            component.name: ActuatorFmu(Path(self._folder, component.source)) for component in find_components(system)
+            component.name: Actuator(Path(self._folder, component.source)) for component in find_components(system)
         }
         self._connections = [
             ((link.startElement, link.startConnector), (link.endElement, link.endConnector))

@@ -17,10 +17,10 @@ from pathlib import Path
 
 import fmpy
 
+from dielectric_actuator import packed_fmu
+
 HERE = Path(__file__).resolve().parent
-TARGET = HERE.parents[1] / "target"
-DEFAULT_FMU = TARGET / "fmu" / "DielectricElastomerActuator.fmu"
-DEFAULT_OUTPUT = TARGET / "examples" / "system"
+DEFAULT_OUTPUT = HERE.parents[1] / "target" / "examples" / "system"
 LINEAR_MODELS = ("supply", "controller")
 
 
@@ -53,13 +53,13 @@ def pack_system(actuator: Path, folder: Path) -> Path:
         for fmu in fmus:
             archive.write(fmu, f"resources/{fmu.name}")
         # under the name that SystemStructure.ssd knows it by
-        archive.write(actuator, f"resources/{DEFAULT_FMU.name}")
+        archive.write(actuator, f"resources/{packed_fmu().name}")
     return ssp
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed actuator (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed actuator (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder (%(default)s)")
     arguments = parser.parse_args()
     print(pack_system(arguments.fmu, arguments.output))

@@ -20,11 +20,13 @@ from fmpy.ssp.ssd import read_ssv
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
+from dielectric_actuator import packed_fmu
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style  # noqa: E402  (the path must be set first)
 from coupling import Coupling  # noqa: E402
-from pack import DEFAULT_FMU, DEFAULT_OUTPUT, pack_system  # noqa: E402
+from pack import DEFAULT_OUTPUT, pack_system  # noqa: E402
 
 DEFAULT_STOP_TIME = 200.0
 STEPS = (2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)
@@ -148,7 +150,7 @@ def steps_saved(found: dict[str, dict[float, float]], name: str) -> tuple[float,
 def main() -> None:
     """Pack, run, print, draw."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed actuator (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed actuator (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder (%(default)s)")
     parser.add_argument("--stop-time", type=float, default=DEFAULT_STOP_TIME, help="a multiple of 2 (%(default)s)")
     arguments = parser.parse_args()

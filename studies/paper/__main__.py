@@ -19,7 +19,7 @@ from pathlib import Path
 
 import figure_style as style
 import numpy as np
-from actuator_fmu import DEFAULT_FMU, ActuatorFmu
+from dielectric_actuator import Actuator, packed_fmu
 from progress import Progress
 
 from paper import chaos, dc, driven, escape, maps, report, resonance, resonance_entries, slips, thresholds
@@ -27,7 +27,7 @@ from paper.entries import Entry
 from paper.scenes import BRANCHES, printed_resonances
 from paper.workers import Workers
 
-DEFAULT_OUTPUT = DEFAULT_FMU.parents[1] / "paper"
+DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "paper"
 GALLERY = ["figure_04", "figure_08", "default_tolerance", "map_escape"]
 
 
@@ -84,7 +84,7 @@ class Independent:
     loose: list[chaos.Loose]
 
 
-def _apply(actuator: ActuatorFmu, item):
+def _apply(actuator: Actuator, item):
     task, argument = item
     return task(actuator, argument)
 
@@ -104,7 +104,7 @@ def independent(workers: Workers, responses: resonance_entries.Responses, size: 
     return Independent(found[0], found[1], peaks, found[5:])
 
 
-def _write(_actuator: ActuatorFmu, item: tuple[Entry, Path, int]) -> None:
+def _write(_actuator: Actuator, item: tuple[Entry, Path, int]) -> None:
     entry, folder, dpi = item
     style.apply()
     style.plt.rcParams["savefig.dpi"] = dpi
@@ -154,7 +154,7 @@ def study(workers: Workers, progress: Progress, size: Size) -> list[Entry]:
 def main() -> int:
     """Run it all; 0 on success, 2 if there is no packed FMU."""
     parser = argparse.ArgumentParser(prog="paper", description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU (%(default)s)")
+    parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the results (%(default)s)")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1, help="worker processes (%(default)s)")
     parser.add_argument("--frequencies", type=int, help=f"frequencies of each response ({Size.frequencies})")

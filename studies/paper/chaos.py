@@ -8,7 +8,7 @@ import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 import turning_points
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Row
 from matplotlib.axes import Axes
 from references import SurfaceEffects
@@ -37,20 +37,20 @@ def indicator_times(window: float) -> np.ndarray:
     return np.unique(np.concatenate([np.geomspace(20, window, 150)[:-1], np.array(CHECKED_AT) * window]))
 
 
-def of_the_paper(_actuator: ActuatorFmu, window: float) -> Indicators:
+def of_the_paper(_actuator: Actuator, window: float) -> Indicators:
     """Indicators of `scenes.driven_runs`, in their order."""
     runs = driven_runs()
     omega = np.array([run.omega for run in runs])
     return DrivenRuns([run.case for run in runs], omega, PHI_AC).indicators(indicator_times(window))
 
 
-def of_the_chaotic(_actuator: ActuatorFmu, window: float) -> Indicators:
+def of_the_chaotic(_actuator: Actuator, window: float) -> Indicators:
     """Indicators of `CHAOTIC`."""
     cases, omega, phi_ac = zip(*CHAOTIC)
     return DrivenRuns(list(cases), np.array(omega), np.array(phi_ac)).indicators(indicator_times(window))
 
 
-def checks(actuator: ActuatorFmu, indicators: Indicators) -> dict[DrivenRun, list[Row]]:
+def checks(actuator: Actuator, indicators: Indicators) -> dict[DrivenRun, list[Row]]:
     """λ of each run at `CHECKED_AT`: the independent integrator (as exact) beside the FMU."""
     found = {}
     for index, run in enumerate(driven_runs()):
@@ -161,7 +161,7 @@ def loose_runs() -> list[tuple[DrivenRun, float]]:
     return [(run, ODE45_RTOL) for run in runs] + [(runs[0], rtol) for rtol in LADDER[1:]]
 
 
-def follow_loosely(_actuator: ActuatorFmu, item: tuple[DrivenRun, float, float]) -> Loose:
+def follow_loosely(_actuator: Actuator, item: tuple[DrivenRun, float, float]) -> Loose:
     run, rtol, window = item
     atol = ODE45_ATOL * rtol / ODE45_RTOL
     sections = np.arange(1, int(window / run.forcing_period) + 1) * run.forcing_period
@@ -178,7 +178,7 @@ def follow_loosely(_actuator: ActuatorFmu, item: tuple[DrivenRun, float, float])
     return Loose(run, rtol, amplitude, np.column_stack([times, stretch**-2]), section)
 
 
-def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) -> Entry:
+def tolerance_entry(actuator: Actuator, found: list[Loose], window: float) -> Entry:
     """The same runs at a default solver's tolerance and at 1e-12: time history, sections, convergence."""
     ladder = [loose for loose in found if loose.run == found[0].run]
     shown = [loose for loose in found if loose.rtol == ODE45_RTOL]
@@ -248,7 +248,7 @@ def tolerance_entry(actuator: ActuatorFmu, found: list[Loose], window: float) ->
     )
 
 
-def _overlay(axes: Axes, actuator: ActuatorFmu, loose: Loose) -> None:
+def _overlay(axes: Axes, actuator: Actuator, loose: Loose) -> None:
     """The section of a loose run, and over it that of the FMU at the same times."""
     period = loose.run.forcing_period
     section = actuator.run(

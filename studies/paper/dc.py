@@ -9,14 +9,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 import references
 import turning_points
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Comparison, Row
 
 from paper.entries import Claim, Entry, long_format
 from paper.equation import time_to
 
 
-def step_responses(actuator: ActuatorFmu) -> list[Entry]:
+def step_responses(actuator: Actuator) -> list[Entry]:
     """Figs. 2 and 3: the response to φ = 0.6 without and with prestress."""
     entries = []
     for number, prestress in ((2, 0.0), (3, 0.5)):
@@ -65,7 +65,7 @@ def _list(families: dict[str, list[float]]) -> str:
     return "; ".join(f"{style.TEXT_SYMBOLS[p]} {', '.join(f'{v:.4g}' for v in vs)}" for p, vs in families.items())
 
 
-def pull_in(actuator: ActuatorFmu) -> list[Entry]:
+def pull_in(actuator: Actuator) -> list[Entry]:
     """Figs. 6 and 7: the motion just below and just above each threshold of Table 1."""
     table = Comparison()
     families = dc_motion.pull_in(actuator, table)
@@ -136,7 +136,7 @@ def pull_in(actuator: ActuatorFmu) -> list[Entry]:
     return entries
 
 
-def verification(actuator: ActuatorFmu) -> Entry:
+def verification(actuator: Actuator) -> Entry:
     """Fig. A.1: the ideal actuator of Joglekar (2014), against quadrature of the energy equation."""
     orbit = references.appendix_a_orbit()
     response = actuator.run(

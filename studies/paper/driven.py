@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Row
 from scipy.spatial import cKDTree
 
@@ -45,7 +45,7 @@ class Motion:
     section: np.ndarray
 
 
-def follow(actuator: ActuatorFmu, item: tuple[DrivenRun, float, int]) -> Motion:
+def follow(actuator: Actuator, item: tuple[DrivenRun, float, int]) -> Motion:
     """A run over a time, and its Poincaré section of so many points at kπ/ω, one communication step each."""
     run, span, points = item
     history = actuator.run(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from matplotlib.colors import LogNorm
 
 from paper.entries import Claim, Entry, Grid, stack
@@ -23,7 +23,7 @@ SLOW_ESCAPE = {"tau_s": 0.02, "phi_ac": 0.3, "omega_ac": 0.117, **LIMITS}
 """Escapes at the paper's amplitude, though at none of its parameter sets."""
 
 
-def escape_row(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> np.ndarray:
+def escape_row(actuator: Actuator, item: tuple[float, np.ndarray]) -> np.ndarray:
     """For one φ_a and each ω the instant of escape of the ideal actuator, +inf if not within `SPAN`."""
     phi_ac, omegas = item
     found = np.empty(len(omegas))
@@ -34,7 +34,7 @@ def escape_row(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> np.ndar
     return found
 
 
-def uncertain(actuator: ActuatorFmu, item: tuple[float, np.ndarray]) -> float:
+def uncertain(actuator: Actuator, item: tuple[float, np.ndarray]) -> float:
     """Share of the places (ω, φ_a) whose fate differs from that of the place `distance` further in φ_a."""
     distance, places = item
     differing = 0

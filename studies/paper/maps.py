@@ -7,7 +7,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import references
 import turning_points
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Row
 from matplotlib.colors import LogNorm
 from references import SurfaceEffects
@@ -28,7 +28,7 @@ IDEAL = SurfaceEffects(0.0, 0.0, 0.0, 0.0)
 PULL_IN_CASES = (IDEAL, SurfaceEffects(0.0, 0.0, 0.007, 0.0))
 
 
-def pull_in_row(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, np.ndarray]) -> np.ndarray:
+def pull_in_row(actuator: Actuator, item: tuple[SurfaceEffects, float, np.ndarray]) -> np.ndarray:
     """For one prestress and each voltage: smallest λ₃ reached, instant of collapse (+inf: none)."""
     case, prestress, voltages = item
     found = np.empty((len(voltages), 2))
@@ -112,7 +112,7 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
     )
 
 
-def threshold_row(actuator: ActuatorFmu, item: tuple[dict[str, float], str, np.ndarray]) -> np.ndarray:
+def threshold_row(actuator: Actuator, item: tuple[dict[str, float], str, np.ndarray]) -> np.ndarray:
     """phi_pull_in for each value of one surface parameter, the others held."""
     held, parameter, values = item
     found = np.empty(len(values))
@@ -182,7 +182,7 @@ def threshold_map(workers: Workers, cells: int) -> Entry:
     )
 
 
-def _redundancy(actuator: ActuatorFmu) -> list[Row]:
+def _redundancy(actuator: Actuator) -> list[Row]:
     rows = []
     for gamma_s, tau_s, E_s in ((0.1, 0.04, 0.0), (0.09, 0.02, 0.02), (0.08, 0.08, 0.025)):
         found = []
@@ -202,7 +202,7 @@ PERIOD_CASES = (
 )
 
 
-def period(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float]) -> float:
+def period(actuator: Actuator, item: tuple[SurfaceEffects, float]) -> float:
     """Period of the motion from rest at one voltage, from its first half: the motion is symmetric in time."""
     case, phi = item
     response = actuator.run(

@@ -10,7 +10,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from references import SurfaceEffects
 
 from paper.scenes import BRANCHES, PHI_AC, cases
@@ -49,7 +49,7 @@ class Response:
     """Of the harmonic branch over the longest window: ω, amplitude just below, and amplitude just above it."""
 
 
-def scan(actuator: ActuatorFmu, item: tuple[SurfaceEffects, np.ndarray, tuple[float, ...]]) -> np.ndarray:
+def scan(actuator: Actuator, item: tuple[SurfaceEffects, np.ndarray, tuple[float, ...]]) -> np.ndarray:
     """Amplitude for each ω (rows) and window (columns)."""
     case, omegas, windows = item
     return np.array(
@@ -57,7 +57,7 @@ def scan(actuator: ActuatorFmu, item: tuple[SurfaceEffects, np.ndarray, tuple[fl
     )
 
 
-def refine(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, list[float], float]) -> Peak:
+def refine(actuator: Actuator, item: tuple[SurfaceEffects, float, list[float], float]) -> Peak:
     """Zoom on each of the `starts`, ω at local maxima of a scan with the given spacing; the highest peak."""
     case, window, starts, spacing = item
     best = Peak(0.0, -1.0)
@@ -72,7 +72,7 @@ def refine(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, list[float]
     return best
 
 
-def find_jump(actuator: ActuatorFmu, item: tuple[SurfaceEffects, float, Peak]) -> tuple[float, float, float]:
+def find_jump(actuator: Actuator, item: tuple[SurfaceEffects, float, Peak]) -> tuple[float, float, float]:
     """Bisection for the ω above the harmonic peak at which the amplitude falls, to 1e-9."""
     case, window, peak = item
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Row
 from references import SurfaceEffects, driven_amplitudes
 
@@ -25,7 +25,7 @@ BESIDE_PEAK = (-1e-5, 0.0, 1e-5)
 """Distances in ω from a peak at which the amplitude is held against the independent integrator's."""
 
 
-def figure_8(actuator: ActuatorFmu, responses: Responses, growth: list[tuple[int, float]], workers: int) -> Entry:
+def figure_8(actuator: Actuator, responses: Responses, growth: list[tuple[int, float]], workers: int) -> Entry:
     """Frequency responses with the refined peaks, over the longest window."""
     windows = next(iter(responses.values())).windows
     figure, rows = plt.subplots(3, 2, figsize=(12, 11), sharex=True, sharey=True)
@@ -85,7 +85,7 @@ def figure_8(actuator: ActuatorFmu, responses: Responses, growth: list[tuple[int
     )
 
 
-def _reference_rows(actuator: ActuatorFmu) -> list[Row]:
+def _reference_rows(actuator: Actuator) -> list[Row]:
     rows = []
     for reference in driven_amplitudes():
         (found,) = amplitudes(actuator, reference.scene(), (reference.stop_time,), EXACTLY)
@@ -181,7 +181,7 @@ def _name(case: SurfaceEffects) -> str:
     return ", ".join(f"{style.TEXT_SYMBOLS[name]} = {getattr(case, name):g}" for name in names)
 
 
-def check_peaks(actuator: ActuatorFmu, item: tuple[list[tuple[SurfaceEffects, float]], float]) -> list[list[Row]]:
+def check_peaks(actuator: Actuator, item: tuple[list[tuple[SurfaceEffects, float]], float]) -> list[list[Row]]:
     """λ₃ᵃ beside each of the given peaks (case, ω) over a window: the independent integrator and the FMU."""
     peaks, window = item
     places = [(case, omega + step) for case, omega in peaks for step in BESIDE_PEAK]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from actuator_fmu import ActuatorFmu, Scene
+from dielectric_actuator import Actuator, Scene
 
 
 def ranges(
-    actuator: ActuatorFmu, scene: Scene, windows: Sequence[float], tolerance: float
+    actuator: Actuator, scene: Scene, windows: Sequence[float], tolerance: float
 ) -> list[tuple[float, float]]:
     """λ₃ lowest and highest over [0, t] for each t of the growing `windows`; one communication step each."""
     actuator.start({**scene, "record_extremes": True}, tolerance=tolerance)
@@ -20,6 +20,6 @@ def ranges(
     return found
 
 
-def amplitudes(actuator: ActuatorFmu, scene: Scene, windows: Sequence[float], tolerance: float) -> np.ndarray:
+def amplitudes(actuator: Actuator, scene: Scene, windows: Sequence[float], tolerance: float) -> np.ndarray:
     """The paper's λ₃ᵃ, half the range of λ₃, over each window."""
     return np.array([(highest - lowest) / 2 for lowest, highest in ranges(actuator, scene, windows, tolerance)])

@@ -8,7 +8,7 @@ import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 import references
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from comparison import Row
 from references import SurfaceEffects
 from scipy.optimize import brentq
@@ -32,13 +32,13 @@ def alone(parameter: str, value: float) -> SurfaceEffects:
     return SurfaceEffects(**{**IDEAL, parameter: value}, S=0.0)
 
 
-def own_threshold(actuator: ActuatorFmu, case: SurfaceEffects) -> references.PullIn:
+def own_threshold(actuator: Actuator, case: SurfaceEffects) -> references.PullIn:
     """What the FMU says of a case, in its variables phi_pull_in and lambda3_pull_in."""
     actuator.start(case.scene())
     return references.PullIn(*actuator.get("phi_pull_in", "lambda3_pull_in"))
 
 
-def table_1(actuator: ActuatorFmu) -> Entry:
+def table_1(actuator: Actuator) -> Entry:
     """Table 1 with the exact values and the FMU's beside the printed ones."""
     stretch, voltage = style.SYMBOLS["lambda3_pull_in"], style.SYMBOLS["phi_pull_in"]
     header = ["", f"{stretch} paper", "exact", "FMU", "paper $-$ exact", f"{voltage} paper", "exact", "FMU"]
@@ -94,7 +94,7 @@ def table_1(actuator: ActuatorFmu) -> Entry:
     )
 
 
-def figure_4(actuator: ActuatorFmu) -> Entry:
+def figure_4(actuator: Actuator) -> Entry:
     """Stagnation curves: exact line, the FMU's overshoot at single voltages, the fold."""
     figure, panels = plt.subplots(1, 3, figsize=(14, 5), sharey=True)
     pieces, rows = [], []
@@ -152,7 +152,7 @@ def _branches(case: SurfaceEffects) -> np.ndarray:
 
 
 def _overshoots(
-    actuator: ActuatorFmu, case: SurfaceEffects, fold: references.PullIn, name: str
+    actuator: Actuator, case: SurfaceEffects, fold: references.PullIn, name: str
 ) -> list[tuple[float, Row]]:
     """Voltage and smallest λ₃ of runs from rest, against the root of Eq. 19 that the motion meets first."""
     one = equation.Cases.of([case])
@@ -172,7 +172,7 @@ def _excess(stretch: float, case: equation.Cases, phi: float) -> float:
     return float(case.stagnation(stretch)[0]) - phi**2
 
 
-def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
+def figure_5(actuator: Actuator, points: int) -> Entry:
     """Thresholds over each surface parameter, up to E*."""
     vanishing = next(c for c in references.cusps() if c.kind == "dynamic" and c.S == 0 and c.gamma_s_minus_tau_s == 0)
     figure, (voltage, stretch) = plt.subplots(1, 2, figsize=(12, 4.6))
@@ -245,7 +245,7 @@ def figure_5(actuator: ActuatorFmu, points: int) -> Entry:
     )
 
 
-def vanishing_elasticity(actuator: ActuatorFmu) -> float:
+def vanishing_elasticity(actuator: Actuator) -> float:
     """E*, to 1e-13: the largest E_s for which the FMU reports a dynamic threshold (no other surface effect)."""
     below, above = 0.02, 0.04
     while above - below > 1e-13:

@@ -12,15 +12,15 @@ from multiprocessing import util
 from pathlib import Path
 from typing import Any
 
-from actuator_fmu import ActuatorFmu
+from dielectric_actuator import Actuator
 from progress import Progress
 
-_actuator: ActuatorFmu | None = None
+_actuator: Actuator | None = None
 
 
 def _open(fmu: Path) -> None:
     global _actuator
-    _actuator = ActuatorFmu(fmu)
+    _actuator = Actuator(fmu)
     # a worker process runs no atexit functions; these it does
     util.Finalize(None, _actuator.close, exitpriority=1)
 
@@ -37,7 +37,7 @@ class Workers:
         self.count = count
         self._progress = progress
         self._pool = ProcessPoolExecutor(count, initializer=_open, initargs=(fmu,)) if count > 1 else None
-        self.actuator = ActuatorFmu(fmu)
+        self.actuator = Actuator(fmu)
         """This process' own instance, for single runs."""
 
     def __enter__(self) -> Workers:
@@ -48,7 +48,7 @@ class Workers:
             self._pool.shutdown(cancel_futures=True)
         self.actuator.close()
 
-    def map(self, task: Callable[[ActuatorFmu, Any], Any], items: Iterable) -> list:
+    def map(self, task: Callable[[Actuator, Any], Any], items: Iterable) -> list:
         """`task` (a function of a module) for each item, in the order of the items; the stage shows how far it is."""
         items: Sequence = list(items)
         if self._pool is None:

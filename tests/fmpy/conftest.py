@@ -1,4 +1,4 @@
-"""What the FMPy tests share: the packed FMU, and the studies' runner that they drive it with."""
+"""What the FMPy tests share: the packed FMU, and the package's `Actuator` that they drive it with."""
 
 import sys
 from pathlib import Path
@@ -6,15 +6,15 @@ from pathlib import Path
 import fmpy
 import pytest
 
+from dielectric_actuator import Actuator, packed_fmu
+from dielectric_actuator.fmu import instantiate as load
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(REPOSITORY / "studies"))
 
-import actuator_fmu  # noqa: E402
-from actuator_fmu import DEFAULT_FMU, ActuatorFmu  # noqa: E402
-
 
 def pytest_addoption(parser):
-    parser.addoption("--fmu", type=Path, default=DEFAULT_FMU, help="the packed FMU to test (default: %(default)s)")
+    parser.addoption("--fmu", type=Path, default=packed_fmu(), help="the packed FMU to test (default: %(default)s)")
 
 
 @pytest.fixture(scope="session")
@@ -34,12 +34,12 @@ def description(fmu_path):
 
 @pytest.fixture(scope="session")
 def session_actuator(fmu_path):
-    with ActuatorFmu(fmu_path) as actuator:
+    with Actuator(fmu_path) as actuator:
         yield actuator
 
 
 @pytest.fixture
-def actuator(session_actuator) -> ActuatorFmu:
+def actuator(session_actuator) -> Actuator:
     """The runner; `start` resets it, so that tests do not see each other."""
     return session_actuator
 
@@ -57,7 +57,7 @@ def instantiate(unpacked, description):
 
     def make():
         log = []
-        instance = actuator_fmu.instantiate(unpacked, description, log)
+        instance = load(unpacked, description, log)
         instance.log = log
         made.append(instance)
         return instance

@@ -16,7 +16,7 @@ EXAMPLE = REPOSITORY / "examples" / "system"
 sys.path.insert(0, str(EXAMPLE))
 
 import pack  # noqa: E402
-from actuator_fmu import ActuatorFmu  # noqa: E402
+from dielectric_actuator import Actuator  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def test_the_linear_fmus_are_valid(linear):
 def test_the_supply_is_exact_under_a_ramp(linear, steps):
     """v' = (a + b t − v)/T from rest, and the derivatives of v, in closed form."""
     a, b, constant = 0.5, 0.03, 2.0
-    with ActuatorFmu(linear["supply"]) as supply:
+    with Actuator(linear["supply"]) as supply:
         supply.start({"time_constant": constant})
         supply.set({"command": a})
         supply.set_input_derivatives({"command": [b]})
@@ -49,7 +49,7 @@ def test_the_supply_is_exact_under_a_ramp(linear, steps):
 
 def test_the_controller_settles_where_its_equations_say(linear):
     """Under a constant stretch the filter's rate dies and the integral grows on."""
-    with ActuatorFmu(linear["controller"]) as controller:
+    with Actuator(linear["controller"]) as controller:
         controller.start({"target": 1.1, "stretch": 1.05, "P": 2.0, "I": 0.5, "D": 3.0, "command_start": 0.3})
         assert controller.get("command") == pytest.approx(0.3 + 2.0 * 0.05 - 3.0 * 0.05 / 0.5, abs=1e-15)
         controller.advance(40.0)

@@ -64,11 +64,12 @@ OTHER_PROCESS = """
 import json, sys
 from pathlib import Path
 import fmpy
+from dielectric_actuator.fmu import instantiate
 sys.path[:0] = {path!r}
-import actuator_fmu, test_state
+import test_state
 folder, saved, time = sys.argv[1], bytes.fromhex(sys.argv[2]), float(sys.argv[3])
 description = fmpy.read_model_description(folder)
-slave = actuator_fmu.instantiate(folder, description, [])
+slave = instantiate(folder, description, [])
 slave.setFMUState(slave.deSerializeFMUstate(saved))
 reference_of = {{v.name: v.valueReference for v in description.modelVariables}}
 print(json.dumps(test_state.follow(slave, reference_of, time)))

@@ -1,23 +1,22 @@
 """What these tests share: the packed FMU, unpacked."""
 
-import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "studies"))
+from dielectric_actuator import packed_fmu
 
-from actuator_fmu import DEFAULT_FMU  # noqa: E402
+REPOSITORY = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture(scope="session")
 def fmu() -> Path:
     """The packed FMU; a test that needs it fails where there is none."""
-    if not DEFAULT_FMU.is_file():
-        pytest.fail(f"no FMU at {DEFAULT_FMU}: build and pack it first (make fmu)", pytrace=False)
-    return DEFAULT_FMU
+    path = packed_fmu()
+    if not path.is_file():
+        pytest.fail(f"no FMU at {path}: build and pack it first (make fmu)", pytrace=False)
+    return path
 
 
 @pytest.fixture(scope="session")

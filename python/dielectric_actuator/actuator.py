@@ -1,0 +1,313 @@
+"""One actuator: start it, step it or run it, read and set it by name, look ahead, differentiate."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import Any, NamedTuple
+
+import fmpy
+import numpy as np
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
+from fmpy.model_description import ScalarVariable
+
+from .fmu import LogMessage, Variables, instantiate, packed_fmu
+
+Scene = Mapping[str, float | Callable[[float], float]]
+"""Start values of one run by variable name; an input may be a function of time."""
+
+
+class SavedState(NamedTuple):
+    """All of an instance at one time, in bytes that any later process restores."""
+
+    time: float
+    state: bytes
+
+
+class Actuator:
+    """One instance of a packed actuator; a context manager, so that library and folder are given back.
+
+    Without a path it is the nondimensional actuator of this package: voltage φ̄ = φ √(ε/µ)/H, prestress
+    S̄ = P/(µHL), time t̄ = t √(12µ/(ρH²)) (Eq. 15 of the paper). Any other FMI 2.0 co-simulation FMU serves
+    as well, in the units that it declares (`variables`). ``messages`` holds what the FMU logged since the last
+    `start`. A call that the FMU refuses raises ``fmpy.fmi1.FMICallException`` with the FMU's reason as a note; a
+    name that it does not have, `UnknownName`.
+
+        with Actuator() as actuator:
+            response = actuator.run({"phi": 0.6}, stop_time=80.0, communication_step=0.1)
+            print(response["time"], response["lambda"])
+
+    ``fmpy.simulate_fmu`` unpacks, loads and frees the FMU at every call; an `Actuator` does so once, and is reset
+    between runs.
+    """
+
+    def __init__(self, path: str | Path | None = None):
+        path = packed_fmu() if path is None else Path(path)
+        if not path.is_file():
+            raise FileNotFoundError(f"no FMU at {path}; in a checkout, make fmu builds and packs it")
+        self.messages: list[LogMessage] = []
+        self.time = 0.0
+        self.description = fmpy.read_model_description(str(path))
+        self._variables = Variables(self.description)
+        self._folder = tempfile.TemporaryDirectory(prefix="actuator-fmu-")
+        fmpy.extract(str(path), unzipdir=self._folder.name)
+        self._fmu = instantiate(self._folder.name, self.description, self.messages)
+        self._fresh = True
+
+    def __enter__(self) -> Actuator:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the instance, unload the library, remove the unpacked folder. A second call does nothing."""
+        if self._fmu is not None:
+            self._fmu.freeInstance()
+            self._fmu = None
+            self._folder.cleanup()
+
+    @property
+    def variables(self) -> Mapping[str, ScalarVariable]:
+        """What the model description says of each variable: ``unit``, ``description``, ``start``, ``min``, ``max``."""
+        return self._variables.by_name
+
+    def start(
+        self,
+        scene: Scene,
+        *,
+        tolerance: float | None = None,
+        start_time: float = 0.0,
+        stop_time: float | None = None,
+        at_equilibrium: bool = False,
+    ) -> None:
+        """Reset, set the scene and leave initialization mode, so that the next call can be `advance`.
+
+        `tolerance` is the integrator's relative tolerance (the FMU's default without one). A function
+        in `scene` is evaluated at `start_time`. `at_equilibrium` starts at rest where the scene's voltage and
+        prestress hold the actuator (`equilibrium`): with surface effects λ = 1 is no such place.
+        """
+        values = {name: value(start_time) if callable(value) else value for name, value in scene.items()}
+        if at_equilibrium:
+            values |= {"lambda_start": self.equilibrium(values, start_time=start_time), "lambda_dot_start": 0.0}
+        if not self._fresh:
+            self._fmu.reset()
+        self._fresh = False
+        self.messages.clear()
+        self.time = start_time
+        with self._reasons():
+            self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
+        self.set(values)
+        with self._reasons():
+            self._fmu.enterInitializationMode()
+            self._fmu.exitInitializationMode()
+
+    def equilibrium(self, values: Mapping[str, float], *, start_time: float = 0.0) -> float:
+        """The smallest stretch at which the actuator rests in equilibrium under `values`, to the last bit.
+
+        It is stable, and it is where a voltage that is raised slowly from 0 leads. Raises ValueError where there
+        is none between `lambda_min` and `lambda_max`, that is beyond the static pull-in.
+        """
+
+        def start(stretch: float) -> None:
+            self.start({**values, "lambda_start": stretch, "lambda_dot_start": 0.0}, start_time=start_time)
+
+        def acceleration(stretch: float) -> float:
+            start(stretch)
+            return float(self.get("lambda_ddot"))
+
+        def slope(stretch: float) -> float:
+            start(stretch)
+            return self.directional_derivatives(["lambda_ddot"], "lambda")[0]
+
+        start(1.0)
+        lowest, highest = self.get("lambda_min", "lambda_max")
+        below = math.nextafter(lowest, highest)
+        falling = slope(below) <= 0
+        for above in map(float, np.geomspace(lowest, highest, 200)[1:-1]):
+            if acceleration(above) > 0:
+                was_falling, falling = falling, slope(above) <= 0
+                if was_falling and not falling:
+                    # close to pull-in, two equilibria may lie between: the acceleration is least there
+                    least = _bisected(lambda stretch: slope(stretch) > 0, below, above)
+                    if acceleration(least) <= 0:
+                        above = least
+            if acceleration(above) <= 0:
+                return _bisected(lambda stretch: acceleration(stretch) <= 0, below, above)
+            below = above
+        raise ValueError(
+            f"there is no equilibrium between lambda_min = {lowest:g} and lambda_max = {highest:g}: the static pull-in "
+            f"voltage is {self.get('phi_pull_in_static'):.6g}"
+        )
+
+    def set(self, values: Mapping[str, float]) -> None:
+        """Set inputs or parameters by name; each FMI type in one call, refused as a whole."""
+        for group in self._variables.grouped(self._fmu, values):
+            group.values[:] = [values[name] for name in group.names]
+            with self._reasons():
+                group.write()
+
+    def set_input_derivatives(self, derivatives: Mapping[str, Sequence[float]]) -> None:
+        """Let inputs vary inside the steps to come: for each its first, second, … derivative by time at `time`.
+
+        They hold until the input is set again, so that they are set after its value.
+        """
+        triples = [
+            (self._variables.reference(name), order, value)
+            for name, values in derivatives.items()
+            for order, value in enumerate(values, start=1)
+        ]
+        if triples:
+            with self._reasons():
+                self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
+
+    def output_derivatives(self, name: str, order: int) -> list[float]:
+        """Derivatives of an output by time at the last communication point, from the first to the given order."""
+        if order == 0:
+            return []
+        references = [self._variables.reference(name)] * order
+        with self._reasons():
+            return list(self._fmu.getRealOutputDerivatives(references, list(range(1, order + 1))))
+
+    def get(self, *names: str) -> Any:
+        """Present value of one variable, or of several as a list in the given order."""
+        found: dict[str, Any] = {}
+        for group in self._variables.grouped(self._fmu, names):
+            with self._reasons():
+                group.read()
+            found.update(zip(group.names, group.values))
+        return found[names[0]] if len(names) == 1 else [found[name] for name in names]
+
+    def directional_derivatives(self, unknowns: Iterable[str], known: str) -> list[float]:
+        """∂unknown/∂known of each unknown at the present state, exact."""
+        references = [self._variables.reference(name) for name in unknowns]
+        with self._reasons():
+            return list(self._fmu.getDirectionalDerivative(references, [self._variables.reference(known)], [1.0]))
+
+    @contextmanager
+    def looking_ahead(self) -> Iterator[None]:
+        """A block in which the instance may run on; after it, it is again where it was before."""
+        state, time = self._fmu.getFMUstate(), self.time
+        try:
+            yield
+        finally:
+            self._fmu.setFMUstate(state)
+            self._fmu.freeFMUstate(state)
+            self.time = time
+
+    def save(self) -> SavedState:
+        """The whole state, for `restore` of any instance of the same FMU in this or a later process."""
+        with self._reasons():
+            state = self._fmu.getFMUstate()
+            try:
+                return SavedState(self.time, self._fmu.serializeFMUstate(state))
+            finally:
+                self._fmu.freeFMUstate(state)
+
+    def restore(self, saved: SavedState) -> None:
+        """Go on from a saved state, bit for bit. Damaged bytes, or those of another version, are refused."""
+        with self._reasons():
+            state = self._fmu.deSerializeFMUstate(saved.state)
+            try:
+                self._fmu.setFMUstate(state)
+            finally:
+                self._fmu.freeFMUstate(state)
+        self.time, self._fresh = saved.time, False
+
+    def advance(self, communication_step: float) -> bool:
+        """One communication step. False if the FMU ended the run inside it (``on_pull_in`` = terminate);
+        `time` is then the instant that it reached."""
+        try:
+            self._fmu.doStep(self.time, communication_step)
+        except FMICallException as refusal:
+            if refusal.status == fmi2Discard and self._fmu.getBooleanStatus(fmi2Terminated):
+                self.time = self._fmu.getRealStatus(fmi2LastSuccessfulTime)
+                return False
+            self._explain(refusal)
+            raise
+        self.time += communication_step
+        return True
+
+    def run(
+        self,
+        scene: Scene,
+        *,
+        stop_time: float,
+        communication_step: float,
+        outputs: Iterable[str] = ("lambda", "lambda3"),
+        tolerance: float | None = None,
+        start_time: float = 0.0,
+        at_equilibrium: bool = False,
+    ) -> np.ndarray:
+        """Run one scene and return its response, one row per communication point.
+
+        The result is a structured array with the field ``time`` and one field per output, as
+        ``fmpy.simulate_fmu`` returns it; `frame` makes a pandas table of it. If `communication_step` does not
+        divide the span, the last step is shorter and ends at `stop_time`. An input given as a function of time
+        is evaluated at the start of each step and held over it. A run that the FMU ends has its last row at that
+        instant.
+        """
+        outputs = list(outputs)
+        # 1e-9 of a step is rounding of the quotient, not a last step worth taking
+        steps = max(0, math.ceil((stop_time - start_time) / communication_step - 1e-9))
+        times = start_time + communication_step * np.arange(steps + 1)
+        times[-1] = stop_time if steps else start_time
+        fields = [("time", np.float64)] + [(name, self._variables.access(name).dtype) for name in outputs]
+        response = np.empty(steps + 1, dtype=fields)
+        response["time"] = times
+        groups = self._variables.grouped(self._fmu, outputs)
+        columns = [([response[name] for name in group.names], group) for group in groups]
+
+        def record(row: int) -> None:
+            for fields, group in columns:
+                group.read()
+                for field, value in zip(fields, group.values):
+                    field[row] = value
+
+        self.start(scene, tolerance=tolerance, start_time=start_time, at_equilibrium=at_equilibrium)
+        record(0)
+        varying = {name: value for name, value in scene.items() if callable(value)}
+        for step in range(1, steps + 1):
+            # communication points are start + k h, not a running sum, and each full step is exactly h
+            self.time = float(times[step - 1])
+            if varying:
+                self.set({name: value(self.time) for name, value in varying.items()})
+            completed = self.advance(communication_step if step < steps else stop_time - self.time)
+            record(step)
+            if not completed:
+                response["time"][step] = self.time
+                return response[: step + 1]
+        return response
+
+    def _explain(self, refusal: FMICallException) -> None:
+        if self.messages and self.messages[-1].status == refusal.status:
+            refusal.add_note(self.messages[-1].text)
+
+    @contextmanager
+    def _reasons(self) -> Iterator[None]:
+        try:
+            yield
+        except FMICallException as refusal:
+            self._explain(refusal)
+            raise
+
+
+def _bisected(beyond: Callable[[float], bool], below: float, above: float) -> float:
+    """The smallest number, to the last bit, from which on `beyond` is true; it is at `above`, not at `below`."""
+    while below < (middle := (below + above) / 2) < above:
+        below, above = (below, middle) if beyond(middle) else (middle, above)
+    return above
+
+
+def frame(response: np.ndarray) -> Any:
+    """A response as a pandas DataFrame with the time as its index (extra ``pandas``)."""
+    import pandas
+
+    return pandas.DataFrame(response).set_index("time")

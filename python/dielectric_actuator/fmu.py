@@ -1,0 +1,166 @@
+"""The packed FMU: where it is, how FMPy loads it, and its variables by name."""
+
+from __future__ import annotations
+
+import difflib
+import platform
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import (
+    FMU2Slave,
+    fmi2Boolean,
+    fmi2CallbackAllocateMemoryTYPE,
+    fmi2CallbackFreeMemoryTYPE,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+    fmi2Integer,
+    fmi2Real,
+    fmi2ValueReference,
+)
+from fmpy.model_description import ModelDescription, ScalarVariable
+
+MODEL = "DielectricElastomerActuator"
+"""Model identifier of the nondimensional actuator."""
+
+_DATA = Path(__file__).resolve().parent / "data"
+_CHECKOUT = Path(__file__).resolve().parents[2] / "target" / "fmu"
+
+
+def packed_fmu(model: str = MODEL) -> Path:
+    """Path of the packed FMU of a model: that of the installed package, or in a checkout ``target/fmu``."""
+    inside = _DATA / f"{model}.fmu"
+    return inside if inside.is_file() else _CHECKOUT / f"{model}.fmu"
+
+
+class UnknownName(KeyError):
+    """A name that there is not; the message suggests those that are spelt alike."""
+
+    def __init__(self, kind: str, name: str, known: Iterable[str]):
+        known = list(known)
+        alike = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
+        ending = f"did you mean {' or '.join(alike)}?" if alike else f"there is {', '.join(known)}"
+        self._message = f"no {kind} {name!r}; {ending}"
+        super().__init__(self._message)
+
+    def __str__(self) -> str:
+        return self._message
+
+
+class LogMessage(NamedTuple):
+    """One call of the logger: FMI status (0 OK, 1 warning, 2 discard, 3 error, 4 fatal), category, text."""
+
+    status: int
+    category: str
+    text: str
+
+
+def instantiate(folder: str | Path, description: ModelDescription, log: list[LogMessage]) -> FMU2Slave:
+    """Instantiate the FMU unpacked in `folder` as an ``fmpy.fmi2.FMU2Slave`` whose messages are appended to `log`.
+
+    FMPy's own way to pass a logger goes through one process-wide pointer: the logger passed last gets the
+    messages of every instance, and once its instance is freed the next message of another one crashes the
+    process (seen with FMPy 0.3.32). FMPy needs that detour for printf-style messages; the actuator's are
+    finished texts, so that each instance can call its own logger directly.
+    """
+
+    def logger(_component: Any, _instance: bytes, status: int, category: bytes, text: bytes) -> None:
+        log.append(LogMessage(status, (category or b"").decode(), text.decode()))
+
+    callbacks = fmi2CallbackFunctions(
+        logger=fmi2CallbackLoggerTYPE(logger),
+        allocateMemory=fmi2CallbackAllocateMemoryTYPE(fmpy.calloc),
+        freeMemory=fmi2CallbackFreeMemoryTYPE(fmpy.free),
+    )
+    identifier = description.coSimulation.modelIdentifier
+    slave = FMU2Slave(
+        guid=description.guid,
+        modelIdentifier=identifier,
+        unzipDirectory=str(folder),
+        instanceName="actuator",
+        libraryPath=_library(Path(folder), identifier),
+    )
+    slave.instantiate(callbacks=callbacks, loggingOn=True)
+    return slave
+
+
+def _library(folder: Path, identifier: str) -> str | None:
+    """The shared library where FMPy would take another's: it looks in ``linux64`` on every 64-bit Linux."""
+    if platform.system() == "Linux" and platform.machine() == "aarch64":
+        return str(folder / "binaries" / "aarch64-linux" / f"{identifier}.so")
+    return None
+
+
+class Access(NamedTuple):
+    """How FMI 2 reads and writes a variable of one type, and how NumPy stores it."""
+
+    function: str
+    c_type: Any
+    dtype: Any
+
+
+_ACCESS = {
+    "Real": Access("Real", fmi2Real, np.float64),
+    "Integer": Access("Integer", fmi2Integer, np.int32),
+    "Enumeration": Access("Integer", fmi2Integer, np.int32),
+    "Boolean": Access("Boolean", fmi2Boolean, np.bool_),
+}
+
+
+class Group:
+    """Variables of one FMI type with their buffers laid out once, so that a step reads without allocating."""
+
+    def __init__(self, slave: FMU2Slave, access: Access, names: list[str], references: list[int]):
+        self.names = names
+        self._component = slave.component
+        self._getter = getattr(slave, "fmi2Get" + access.function)
+        self._setter = getattr(slave, "fmi2Set" + access.function)
+        self._references = (fmi2ValueReference * len(references))(*references)
+        self.values = (access.c_type * len(references))()
+
+    def read(self) -> None:
+        """Fill `values` from the instance."""
+        self._getter(self._component, self._references, len(self.values), self.values)
+
+    def write(self) -> None:
+        """Hand `values` to the instance."""
+        self._setter(self._component, self._references, len(self.values), self.values)
+
+
+class Variables:
+    """The variables of a model by name, as its description lists them."""
+
+    def __init__(self, description: ModelDescription):
+        self.by_name: Mapping[str, ScalarVariable] = {
+            variable.name: variable for variable in description.modelVariables
+        }
+        self._groups: dict[tuple[str, ...], list[Group]] = {}
+
+    def __getitem__(self, name: str) -> ScalarVariable:
+        if name not in self.by_name:
+            raise UnknownName("variable", name, self.by_name)
+        return self.by_name[name]
+
+    def reference(self, name: str) -> int:
+        """Value reference of a variable."""
+        return int(self[name].valueReference)
+
+    def access(self, name: str) -> Access:
+        """How a variable is read and written."""
+        return _ACCESS[self[name].type]
+
+    def grouped(self, slave: FMU2Slave, names: Iterable[str]) -> list[Group]:
+        """The names by FMI type, each group with its buffers; laid out once for each list of names."""
+        names = tuple(names)
+        if names not in self._groups:
+            by_access: dict[Access, list[str]] = {}
+            for name in names:
+                by_access.setdefault(self.access(name), []).append(name)
+            self._groups[names] = [
+                Group(slave, access, group, [self.reference(name) for name in group])
+                for access, group in by_access.items()
+            ]
+        return self._groups[names]
