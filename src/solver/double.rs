@@ -115,6 +115,14 @@ impl Double {
         self.mul(Double::new(factor))
     }
 
+    /// The square root of a number above 0: that of `f64` and one step of Newton's method.
+    #[must_use]
+    pub fn sqrt(self) -> Double {
+        let root = Double::new(self.value().sqrt());
+        let rest = self.sub(root.mul(root));
+        root.add(rest.div(root.scale(2.0)))
+    }
+
     /// The number rounded to `f64`.
     #[must_use]
     pub const fn value(self) -> f64 {
@@ -158,6 +166,13 @@ mod tests {
     fn a_third_times_three_is_one_to_thirty_digits() {
         let third = Double::ONE.div(Double::new(3.0));
         let rest = third.scale(3.0).sub(Double::ONE);
+        assert!(rest.value().abs() < 1e-31, "{rest:?}");
+    }
+
+    #[test]
+    fn a_root_squared_is_the_number_to_thirty_digits() {
+        let root = Double::new(2.0).sqrt();
+        let rest = root.mul(root).sub(Double::new(2.0));
         assert!(rest.value().abs() < 1e-31, "{rest:?}");
     }
 

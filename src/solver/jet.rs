@@ -132,6 +132,36 @@ impl<const TERMS: usize> Number for Jet<TERMS> {
         }
         Jet { term: sine }
     }
+
+    /// From e' = e a'.
+    fn exp(self) -> Self {
+        let slope: [f64; TERMS] = std::array::from_fn(|k| k as f64 * self.term[k]);
+        let mut term = [0.0; TERMS];
+        term[0] = self.term[0].exp();
+        for k in 1..TERMS {
+            term[k] = convolution(&slope, &term, k, 1..=k) / k as f64;
+        }
+        Jet { term }
+    }
+
+    /// From r² = a.
+    fn sqrt(self) -> Self {
+        let mut term = [0.0; TERMS];
+        term[0] = self.term[0].sqrt();
+        for k in 1..TERMS {
+            let known = convolution(&term, &term, k, 1..=k - 1);
+            term[k] = (self.term[k] - known) / (2.0 * term[0]);
+        }
+        Jet { term }
+    }
+
+    /// Of a series that begins below 0, the negative.
+    fn magnitude(self) -> Self {
+        if self.term[0] < 0.0 {
+            return Jet::constant(0.0) - self;
+        }
+        self
+    }
 }
 
 #[cfg(test)]
@@ -142,6 +172,22 @@ mod tests {
     fn a_quotient_is_the_geometric_series() {
         let one = Jet::<6>::constant(1.0);
         assert_eq!((one / (one - Jet::variable())).term, [1.0; 6]);
+    }
+
+    /// e^(0.3 + 2ε) against its derivatives; its root squared is itself.
+    #[test]
+    fn the_series_of_exponential_and_root_are_those_of_their_derivatives() {
+        let two = Jet::<7>::constant(2.0);
+        let power = (Jet::constant(0.3) + two * Jet::variable()).exp();
+        let mut expected = 0.3_f64.exp();
+        for (k, term) in power.term.into_iter().enumerate() {
+            assert!((term - expected).abs() < 1e-15 * expected, "{k}");
+            expected *= 2.0 / (k + 1) as f64;
+        }
+        let root = power.sqrt();
+        for (square, term) in (root * root).term.into_iter().zip(power.term) {
+            assert!((square - term).abs() < 1e-15 * term);
+        }
     }
 
     /// sin(0.3 + 2ε) against its derivatives, and against 2 sin(a/2) cos(a/2)

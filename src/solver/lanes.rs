@@ -79,6 +79,24 @@ macro_rules! lanes {
                 let sum = SimdFloat::mul_add(high, eighth, low);
                 SimdFloat::mul_add(turned * square, sum, turned)
             }
+
+            /// Lane by lane, as single numbers.
+            #[inline(always)]
+            fn exp(self) -> Self {
+                let mut values = [0.0; $lanes];
+                self.store_slice(&mut values);
+                $register::simd_from(self.simd, values.map(f64::exp))
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn magnitude(self) -> Self {
+                <Self as SimdBase<S>>::abs(self)
+            }
         }
 
         impl<S: Simd> Lanes<S, $lanes> for $register<S> {

@@ -5,6 +5,7 @@
 //! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
 //! * `hop`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`batch`]: many motions at once, one in each lane;
+//! * [`coupled`]: the same with first-order states and dissipation;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
 //! * [`orbit`]: a motion that repeats;
@@ -15,6 +16,7 @@
 
 pub mod batch;
 pub mod collocation;
+pub mod coupled;
 pub mod double;
 pub mod extremes;
 mod hop;

@@ -23,6 +23,18 @@ pub trait Number:
     #[must_use]
     fn sin(self) -> Self;
 
+    /// Exponential function.
+    #[must_use]
+    fn exp(self) -> Self;
+
+    /// Square root.
+    #[must_use]
+    fn sqrt(self) -> Self;
+
+    /// Absolute value.
+    #[must_use]
+    fn magnitude(self) -> Self;
+
     /// The nearest whole number, the even one of two, of a number below 2⁵¹ by size:
     /// without the instruction, for which the oldest x86-64 would call a function.
     #[must_use]
@@ -47,5 +59,20 @@ impl Number for f64 {
     #[inline(always)]
     fn sin(self) -> f64 {
         f64::sin(self)
+    }
+
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        f64::exp(self)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> f64 {
+        f64::abs(self)
     }
 }

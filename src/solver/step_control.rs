@@ -26,7 +26,7 @@ const REPEATED_SHARE: f64 = 0.001;
 
 /// Contraction above which a shorter substep is cheaper: it grows with the
 /// square of the length, and near 1 the iteration diverges.
-const SLOW: f64 = 0.35;
+pub(super) const SLOW: f64 = 0.35;
 
 /// The same of a stride, whose first guess is good for short ones only.
 const SLOW_STRIDE: f64 = 0.25;
@@ -130,7 +130,9 @@ impl StepControl {
     }
 }
 
-fn verdict(ratio: f64, order: f64, effort: f64) -> Verdict {
+/// What follows from an error by `ratio` larger than allowed, of this `order`, and from how much
+/// longer (squared) the step may be for the iteration's sake.
+pub(super) fn verdict(ratio: f64, order: f64, effort: f64) -> Verdict {
     // Below 1e-30 the error is nothing at all.
     let by_error = CAUTION * power(ratio.max(1e-30), -1.0 / order);
     if ratio.is_nan() || ratio > 1.0 {

@@ -20,10 +20,10 @@
 use super::double::Double;
 
 /// Nodes of the largest method.
-const MOST_NODES: usize = 16;
+pub(super) const MOST_NODES: usize = 16;
 
 /// Legendre polynomials at one point: degrees 0 to the number of nodes + 1.
-type Legendre = [Double; MOST_NODES + 2];
+pub(super) type Legendre = [Double; MOST_NODES + 2];
 
 /// A matrix by columns: column j multiplies the value at node pair j.
 pub type Columns<const P: usize> = [[f64; P]; P];
@@ -191,7 +191,7 @@ impl<const P: usize> Tables<P> {
 }
 
 /// The integral of P_k from −1, without the constant of k = 0.
-const fn once(p: &Legendre, k: usize) -> Double {
+pub(super) const fn once(p: &Legendre, k: usize) -> Double {
     if k == 0 {
         return p[1];
     }
@@ -200,7 +200,7 @@ const fn once(p: &Legendre, k: usize) -> Double {
 
 /// The twice repeated integral of P_k from −1, without the terms that the
 /// caller adds by itself: u for k = 0 and the constant −1/3 for k = 1.
-const fn twice(p: &Legendre, k: usize) -> Double {
+pub(super) const fn twice(p: &Legendre, k: usize) -> Double {
     match k {
         // (u² + 1)/2, from (u + 1)²/2.
         0 => p[1].mul(p[1]).add(Double::ONE).scale(0.5),
@@ -240,7 +240,7 @@ const fn integrated(coefficient: Double, p: usize) -> f64 {
 }
 
 /// P_0 to P_n+1 at `u`, by Bonnet's recursion.
-const fn legendre(u: Double) -> Legendre {
+pub(super) const fn legendre(u: Double) -> Legendre {
     let mut p = [Double::ONE; MOST_NODES + 2];
     p[1] = u;
     let mut k = 1;
@@ -278,7 +278,7 @@ const fn legendre_powers() -> [[Double; MOST_NODES]; MOST_NODES] {
 }
 
 /// The derivative of P_n at `u`.
-const fn legendre_slope(u: Double, p: &Legendre, n: usize) -> Double {
+pub(super) const fn legendre_slope(u: Double, p: &Legendre, n: usize) -> Double {
     p[n - 1]
         .sub(u.mul(p[n]))
         .scale(n as f64)
@@ -286,7 +286,7 @@ const fn legendre_slope(u: Double, p: &Legendre, n: usize) -> Double {
 }
 
 /// The i-th positive zero of P_n, by Newton's method from Tricomi's estimate.
-const fn gauss_node(i: usize, n: usize) -> Double {
+pub(super) const fn gauss_node(i: usize, n: usize) -> Double {
     // cos(π(4k−1)/(4n+2)) for the k-th largest zero, by its power series.
     let k = n / 2 - i;
     let angle = std::f64::consts::PI * (4 * k - 1) as f64 / (4 * n + 2) as f64;
@@ -307,7 +307,7 @@ const fn gauss_node(i: usize, n: usize) -> Double {
 }
 
 /// The weight of a node: 2 / ((1 − u²) P'_n(u)²).
-const fn gauss_weight(u: Double, p: &Legendre, n: usize) -> Double {
+pub(super) const fn gauss_weight(u: Double, p: &Legendre, n: usize) -> Double {
     let slope = legendre_slope(u, p, n);
     Double::new(2.0).div(Double::ONE.sub(u.mul(u)).mul(slope.mul(slope)))
 }

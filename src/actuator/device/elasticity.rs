@@ -1,0 +1,154 @@
+//! The law of the elastic stiffness in equal-biaxial stretch: the factor h(I) by which the
+//! neo-Hookean force λ − λ⁻⁵ is multiplied, with I = 2λ² + λ⁻⁴ − 3.
+//!
+//! | law | h | energy, over µ times the volume |
+//! |---|---|---|
+//! | neo-Hookean | 1 | I/2 |
+//! | Gent | 1/(1 − I/J) | −(J/2) ln(1 − I/J) |
+//! | Yeoh | 1 + 2κ2 I + 3κ3 I² | (I + κ2 I² + κ3 I³)/2 |
+//!
+//! Sources: A. N. Gent, Rubber Chem. Technol. 69 (1996) 59–61; O. H. Yeoh, Rubber Chem. Technol.
+//! 66 (1993) 754–771.
+
+use serde::{Deserialize, Serialize};
+
+use crate::solver::double::Double;
+use crate::solver::number::Number;
+
+/// The law of the elastic stiffness.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Elasticity {
+    /// No stiffening.
+    NeoHookean,
+    /// The stretch is limited.
+    Gent(Locking),
+    /// A polynomial in I; κ_j = C_j0/C10.
+    Yeoh {
+        /// κ2.
+        second: f64,
+        /// κ3.
+        third: f64,
+    },
+}
+
+/// Where a Gent material locks: 1 − I/J = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Locking {
+    limit: f64,
+    largest: Double,
+    smallest: Double,
+    third: f64,
+}
+
+impl Locking {
+    /// The locking of a material with the `limit` J > 0.
+    ///
+    /// With x = λ², J x² (1 − I/J) = −(2x³ − (J+3)x² + 1), whose roots are x = λ² at the largest
+    /// and the smallest stretch, and a negative one. They start from the trigonometric solution
+    /// and are refined by Newton's method in double length.
+    #[must_use]
+    pub fn new(limit: f64) -> Locking {
+        let a = 0.5 * (limit + 3.0);
+        // cos θ = 1 − 27/(4a³), without the loss where θ is small.
+        let angle = 2.0 * (27.0 / (8.0 * a.powi(3))).sqrt().min(1.0).asin();
+        let root = |turn: f64| {
+            let start = a / 3.0 * (1.0 + 2.0 * ((angle + turn) / 3.0).cos());
+            refined(limit, start)
+        };
+        let largest = root(0.0);
+        let smallest = root(4.0 * std::f64::consts::PI);
+        Locking {
+            limit,
+            largest: largest.sqrt(),
+            smallest: smallest.sqrt(),
+            third: 0.5 / (largest.value() * smallest.value()),
+        }
+    }
+
+    /// J.
+    #[must_use]
+    pub fn limit(&self) -> f64 {
+        self.limit
+    }
+
+    /// The stretch at which it locks.
+    #[must_use]
+    pub fn largest(&self) -> Double {
+        self.largest
+    }
+
+    /// The stretch at which it locks in contraction.
+    #[must_use]
+    pub fn smallest(&self) -> Double {
+        self.smallest
+    }
+
+    /// 1 − I/J from the stretch and its distances to both locking stretches: no digits are lost
+    /// near them.
+    #[inline(always)]
+    pub fn gap<N: Number>(&self, stretch: N, to_largest: N, from_smallest: N) -> N {
+        let number = |value: f64| stretch.same(value);
+        let square = stretch * stretch;
+        let above = to_largest * (stretch + number(self.largest.high));
+        let below = from_smallest * (stretch + number(self.smallest.high));
+        number(2.0 / self.limit) * above * below * (square + number(self.third)) / (square * square)
+    }
+}
+
+/// The root near `x` of 2x³ − (J+3)x² + 1 in double length.
+fn refined(limit: f64, x: f64) -> Double {
+    let mut x = Double::new(x);
+    for _ in 0..6 {
+        let square = x.mul(x);
+        let a = Double::new(limit).plus(3.0);
+        let value = x.scale(2.0).sub(a).mul(square).add(Double::ONE);
+        let slope = x.value() * (6.0 * x.value() - 2.0 * a.value());
+        if slope != 0.0 {
+            x = x.sub(value.div(Double::new(slope)));
+        }
+    }
+    x
+}
+
+/// I = 2λ² + λ⁻⁴ − 3 = (λ² − 1)² (2λ² + 1)/λ⁴, without cancellation near 1.
+#[inline(always)]
+pub fn invariant<N: Number>(square: N) -> N {
+    let one = square.same(1.0);
+    let growth = square - one;
+    growth * growth * (square + square + one) / (square * square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn locking_stretches_are_those_of_thirty_digits() {
+        let locking = Locking::new(110.0);
+        assert_eq!(locking.largest().high, 7.516_637_770_292_972);
+        assert_eq!(locking.smallest().high, 0.306_839_640_421_347_1);
+        let error = locking
+            .largest()
+            .sub(Double::new(7.516_637_770_292_972))
+            .value();
+        assert!(error.abs() < 1e-15);
+    }
+
+    /// The products against 1 − I/J as it is defined, from soft to almost rigid.
+    #[test]
+    fn the_gap_is_what_the_definition_says() {
+        for limit in [1e-3, 1.0, 30.0, 110.0, 1e6] {
+            let locking = Locking::new(limit);
+            let [low, high] = [locking.smallest(), locking.largest()];
+            for part in [0.01, 0.3, 0.7, 0.99] {
+                let x = low.value() + part * (high.value() - low.value());
+                let gap = locking.gap(x, high.plus(-x).value(), x - low.value());
+                let definition = 1.0 - invariant(x * x) / limit;
+                assert!(
+                    (gap - definition).abs() < 1e-11,
+                    "{limit} {x} {gap} {definition}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,247 @@
+//! Energies of a real actuator and the powers that change them, in units of E0.
+//!
+//! ```text
+//! kinetic M λ'²    elastic ½I, −½J ln(1 − I/J), ½(I + κ2 I² + κ3 I³)
+//! surface 2[γ(λ²−1) + τλ²(λ²−1) + ½Eλ²(λ²−1)²]    spring k̄(λ − l̄)²
+//! branch ½m I(λ²/g) or its Gent form    electric q²/(2λ⁴e)
+//! lost per time: 2(b̄ + 6η̄λ⁻²)λ'²,  3 m τ̄ (g'/g)²,  r_s i²,  φ_m·leak
+//! supplied: φ_s i (by a current source (φ_m + r_s i) i),  2Sλ'
+//! ```
+//!
+//! The sum of what is stored, less what is supplied, plus what is lost, is constant.
+
+use super::elasticity::{Elasticity, invariant};
+use super::equation::{Load, LocalDevice, Powers};
+use super::parameters::Source;
+use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};
+use crate::solver::jet::Dual;
+
+/// An energy smaller than this, in units of E0, is not resolved relative to itself.
+const SMALL_ENERGY: f64 = 1e-9;
+
+/// What is stored, in units of E0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stored {
+    /// Of the motion, a load mass included.
+    pub kinetic: f64,
+    /// Of the elastic network.
+    pub elastic: f64,
+    /// Of the surfaces.
+    pub surface: f64,
+    /// Of the spring between the edges.
+    pub spring: f64,
+    /// Of the springs of the Maxwell branches.
+    pub branches: f64,
+    /// Of the electric field.
+    pub electric: f64,
+}
+
+impl Stored {
+    /// All of it.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.elastic + self.surface + self.spring + self.branches + self.electric
+    }
+}
+
+/// What is lost and supplied: per time, or summed up since the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchanged {
+    /// Lost by viscous damping.
+    pub damping: f64,
+    /// Lost in the dashpots of the Maxwell branches.
+    pub branches: f64,
+    /// Lost in the series resistance.
+    pub series: f64,
+    /// Lost by leakage.
+    pub leakage: f64,
+    /// Supplied by the electrical source.
+    pub electrical: f64,
+    /// Supplied by the prestress.
+    pub mechanical: f64,
+}
+
+impl Exchanged {
+    /// As a row, in the order of the integrals of the motion.
+    #[must_use]
+    pub fn all(&self) -> [f64; MOST_INTEGRALS] {
+        [
+            self.damping,
+            self.branches,
+            self.series,
+            self.leakage,
+            self.electrical,
+            self.mechanical,
+        ]
+    }
+
+    /// From the integrals of a motion.
+    #[must_use]
+    pub fn from_integrals(all: &[f64; MOST_INTEGRALS]) -> Exchanged {
+        let [damping, branches, series, leakage, electrical, mechanical] = *all;
+        Exchanged {
+            damping,
+            branches,
+            series,
+            leakage,
+            electrical,
+            mechanical,
+        }
+    }
+
+    /// Supplied less lost: what the stored energy has gained.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        let lost = self.damping + self.branches + self.series + self.leakage;
+        self.electrical + self.mechanical - lost
+    }
+}
+
+impl LocalDevice<'_> {
+    /// What is stored at `offset` after the origin of time.
+    #[must_use]
+    pub fn stored(&self, offset: f64, stage: &Stage) -> Stored {
+        let device = self.device;
+        let load = self.load(offset);
+        let p = Powers::of(self.stretch(stage.position));
+        let i = invariant(p.square);
+        let elastic = match &device.elasticity {
+            Elasticity::NeoHookean => 0.5 * i,
+            Elasticity::Gent(locking) => {
+                let gap = self.gap(locking, stage.position);
+                // Near 1 the logarithm needs its argument less 1.
+                let logarithm = if gap > 0.5 {
+                    (-i / locking.limit()).ln_1p()
+                } else {
+                    gap.ln()
+                };
+                -0.5 * locking.limit() * logarithm
+            }
+            Elasticity::Yeoh { second, third } => 0.5 * i * (1.0 + i * (second + i * third)),
+        };
+        let growth = (p.stretch - 1.0) * (p.stretch + 1.0);
+        let sheet = &device.sheet;
+        let surface = 2.0
+            * growth
+            * (sheet.surface_energy
+                + p.square * (sheet.surface_tension + 0.5 * sheet.surface_elasticity * growth));
+        let extension = p.stretch - device.spring.rest;
+        let mut branches = 0.0;
+        for (k, branch) in device.present_branches().enumerate() {
+            let i = invariant(p.square / self.branch_state(&stage.internal, k));
+            branches += 0.5
+                * branch.modulus
+                * if branch.limit.is_infinite() {
+                    i
+                } else {
+                    -branch.limit * (-i / branch.limit).ln_1p()
+                };
+        }
+        let voltage = self.membrane_voltage(&load, stage);
+        let inverse_sixth = p.inverse_fourth * p.inverse_square;
+        Stored {
+            kinetic: (sheet.aspect + 2.0 * inverse_sixth) * stage.rate * stage.rate,
+            elastic,
+            surface,
+            spring: device.spring.stiffness * extension * extension,
+            branches,
+            electric: 0.5 * self.capacitance(p.stretch) * voltage * voltage,
+        }
+    }
+
+    /// The current into the actuator at `offset`, where z' has these `slopes`.
+    #[must_use]
+    pub fn current(&self, offset: f64, stage: &Stage, slopes: &[f64; MOST_STATES]) -> f64 {
+        let load = self.load(offset);
+        let port = &self.device.port;
+        let charging = match port.source {
+            Source::Current => return load.source,
+            Source::Charge => self.drive.voltage(Dual::new(offset, 1.0)).slope(),
+            Source::Voltage if self.device.has_charge_state() => slopes[0],
+            Source::Voltage => {
+                let stretch = Dual::new(self.stretch(stage.position), stage.rate);
+                let voltage = self.drive.voltage(Dual::new(offset, 1.0));
+                (self.capacitance(stretch) * voltage).slope()
+            }
+        };
+        charging + self.leak(&load, stage)
+    }
+
+    /// The current that leaks through the material and beside it.
+    #[must_use]
+    pub fn leak(&self, load: &Load, stage: &Stage) -> f64 {
+        let stretch = self.stretch(stage.position);
+        let voltage = self.membrane_voltage(load, stage);
+        voltage * self.conductance(voltage, stretch * stretch)[0]
+    }
+
+    /// What is lost and supplied per time at `offset`, where z' has these `slopes`.
+    #[must_use]
+    pub fn powers_at(&self, offset: f64, stage: &Stage, slopes: &[f64; MOST_STATES]) -> Exchanged {
+        let device = self.device;
+        let load = self.load(offset);
+        let stretch = self.stretch(stage.position);
+        let damping = device.damping.linear + 6.0 * device.damping.viscosity / (stretch * stretch);
+        let mut branches = 0.0;
+        for (k, branch) in device.present_branches().enumerate() {
+            let strain_rate = self.branch_state(slopes, k) / self.branch_state(&stage.internal, k);
+            branches += 3.0 * branch.modulus * branch.relaxation_time * strain_rate * strain_rate;
+        }
+        let current = self.current(offset, stage, slopes);
+        let voltage = self.membrane_voltage(&load, stage);
+        let series = device.port.resistance * current;
+        let supply = match device.port.source {
+            Source::Voltage => load.source,
+            Source::Current | Source::Charge => voltage + series,
+        };
+        Exchanged {
+            damping: 2.0 * damping * stage.rate * stage.rate,
+            branches,
+            series: series * current,
+            leakage: voltage * self.leak(&load, stage),
+            electrical: supply * current,
+            mechanical: 2.0 * load.prestress * stage.rate,
+        }
+    }
+
+    /// How far the true field is below that of breakdown; infinite where none is given.
+    #[must_use]
+    pub fn breakdown_margin(&self, load: &Load, stage: &Stage) -> f64 {
+        let Some(breakdown) = &self.device.breakdown else {
+            return f64::INFINITY;
+        };
+        let stretch = self.stretch(stage.position);
+        let field = self.membrane_voltage(load, stage) * stretch * stretch;
+        breakdown.field * stretch.powf(breakdown.exponent) - field.abs()
+    }
+
+    /// The size of the energies around a stage.
+    pub(super) fn energy_size(&self, stage: &Stage, charge: f64, frequency: f64) -> f64 {
+        let stored = self.stored(0.0, stage);
+        let capacitance = self.capacitance(self.stretch(stage.position));
+        let electric = match self.device.port.source {
+            Source::Voltage => {
+                let voltage = self.drive.largest_voltage();
+                0.5 * capacitance * voltage * voltage
+            }
+            _ => 0.5 * charge * charge / capacitance,
+        };
+        // What the forces at this stage may still do.
+        let [force, inertia, _] = self.forces(&self.load(0.0), stage);
+        let swing = force / frequency;
+        stored.total() + electric + swing * swing / inertia + SMALL_ENERGY
+    }
+
+    /// The voltage at the membrane, or what it may be for a while.
+    pub(super) fn largest_membrane_voltage(&self, stage: &Stage) -> f64 {
+        let load = self.load(0.0);
+        let present = self.membrane_voltage(&load, stage).abs();
+        match self.device.port.source {
+            Source::Voltage => present.max(self.drive.largest_voltage()),
+            Source::Current => present,
+            Source::Charge => {
+                self.drive.largest_voltage() / self.capacitance(self.stretch(stage.position))
+            }
+        }
+    }
+}

@@ -1,0 +1,325 @@
+//! The equation of motion of a real actuator, its first-order states and its powers.
+//!
+//! With the inertia M = c + 2λ⁻⁶, the elastic factor h (see [`super::elasticity`]) and the
+//! folded coefficients of Eq. 16 of the paper,
+//!
+//! ```text
+//! M λ'' = 6λ⁻⁷λ'² − (λ − λ⁻⁵)h − (a1 − 1)λ − a3 λ³ − a5 λ⁵ + S + k̄l̄ + F_e
+//!         − (b̄ + 6η̄λ⁻²)λ' − Σ m_k h_k (λ/g_k − g_k²λ⁻⁵)
+//! F_e   = φ_m² (λ³e + ¼λ⁴e'),   φ_m = q/(λ⁴e)
+//! q'    = i − φ_m [ḡ_p + σ̄λ⁴ exp(|φ_m|λ²/Ē_c)],   i = (φ_s − φ_m)/r_s
+//! g_k'  = (λ² − g_k³λ⁻⁴) h_k/(3τ̄_k)
+//! ```
+//!
+//! These follow from the energies and dissipations of [`super::energy`]; the balance is tested.
+
+use super::elasticity::{Elasticity, Locking, invariant};
+use super::parameters::{Branch, Device, Permittivity, Source};
+use crate::actuator::Drive;
+use crate::actuator::drive::LocalDrive;
+use crate::solver::coupled::{MOST_STATES, Slope, Stage};
+use crate::solver::double::Double;
+use crate::solver::number::Number;
+
+/// What the drive gives at a time, or at lanes of times.
+#[derive(Clone, Copy, Debug)]
+pub struct Load<N = f64> {
+    /// The voltage, current or charge of the source.
+    pub source: N,
+    /// S, the prestress, without the preload of the spring.
+    pub prestress: N,
+}
+
+/// A [`Device`] with the origins of time and stretch moved.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalDevice<'a> {
+    pub(super) device: &'a Device,
+    pub(super) drive: LocalDrive<'a>,
+    /// The stretch at position 0.
+    origin: f64,
+    /// Both locking stretches, counted from there.
+    walls: [f64; 2],
+    /// a1 − 1, with the spring; a3, a5 of the folded equation, and k̄l̄.
+    linear: f64,
+    cubic: f64,
+    quintic: f64,
+    preload: f64,
+    has_charge: bool,
+}
+
+/// The elastic state at a stretch.
+#[derive(Clone, Copy)]
+pub(super) struct Powers<N> {
+    pub stretch: N,
+    pub square: N,
+    pub inverse: N,
+    /// λ⁻², λ⁻⁴, λ⁻⁵.
+    pub inverse_square: N,
+    pub inverse_fourth: N,
+    pub inverse_fifth: N,
+}
+
+impl<N: Number> Powers<N> {
+    #[inline(always)]
+    pub fn of(stretch: N) -> Powers<N> {
+        let inverse = stretch.same(1.0) / stretch;
+        let inverse_square = inverse * inverse;
+        let inverse_fourth = inverse_square * inverse_square;
+        Powers {
+            stretch,
+            square: stretch * stretch,
+            inverse,
+            inverse_square,
+            inverse_fourth,
+            inverse_fifth: inverse_fourth * inverse,
+        }
+    }
+}
+
+impl Permittivity {
+    /// e and e' at a stretch.
+    #[inline(always)]
+    pub fn at<N: Number>(&self, stretch: N) -> [N; 2] {
+        let number = |value: f64| stretch.same(value);
+        let [k1, k2, k3] = self.terms;
+        let x = stretch - number(1.0);
+        let value = number(k3)
+            .mul_add(x, number(k2))
+            .mul_add(x, number(k1))
+            .mul_add(x, number(1.0));
+        let slope = number(3.0 * k3)
+            .mul_add(x, number(2.0 * k2))
+            .mul_add(x, number(k1));
+        [value, slope]
+    }
+}
+
+impl<'a> LocalDevice<'a> {
+    /// The device under a drive, seen from a time and an origin of the stretch.
+    #[must_use]
+    pub fn new(device: &'a Device, drive: &'a Drive, time: &Double, origin: &Double) -> Self {
+        let folded = device.folded();
+        let walls = match &device.elasticity {
+            Elasticity::Gent(locking) => {
+                [locking.largest(), locking.smallest()].map(|wall| wall.sub(*origin).value())
+            }
+            _ => [f64::INFINITY, f64::NEG_INFINITY],
+        };
+        LocalDevice {
+            device,
+            drive: drive.at(time),
+            origin: origin.value(),
+            walls,
+            linear: folded.linear - 1.0,
+            cubic: folded.cubic,
+            quintic: folded.quintic,
+            preload: device.spring.preload(),
+            has_charge: device.has_charge_state(),
+        }
+    }
+
+    /// Both locking stretches, counted from the origin.
+    pub(super) fn walls(&self) -> [f64; 2] {
+        self.walls
+    }
+
+    /// The coefficients of λ, λ³ and λ⁵ without the elastic ones.
+    pub(super) fn surface(&self) -> [f64; 3] {
+        [self.linear, self.cubic, self.quintic]
+    }
+
+    /// The stretch at a position.
+    #[inline(always)]
+    pub fn stretch<N: Number>(&self, position: N) -> N {
+        position + position.same(self.origin)
+    }
+
+    /// 1 − I/J of a Gent material at a position.
+    #[inline(always)]
+    pub(super) fn gap<N: Number>(&self, locking: &Locking, position: N) -> N {
+        let [largest, smallest] = self.walls;
+        let number = |value: f64| position.same(value);
+        locking.gap(
+            self.stretch(position),
+            number(largest) - position,
+            position - number(smallest),
+        )
+    }
+
+    /// The elastic factor h at a position.
+    #[inline(always)]
+    fn stiffening<N: Number>(&self, position: N, square: N) -> N {
+        let one = position.same(1.0);
+        match &self.device.elasticity {
+            Elasticity::NeoHookean => one,
+            Elasticity::Gent(locking) => one / self.gap(locking, position),
+            Elasticity::Yeoh { second, third } => {
+                let number = |value: f64| position.same(value);
+                let i = invariant(square);
+                number(3.0 * third)
+                    .mul_add(i, number(2.0 * second))
+                    .mul_add(i, one)
+            }
+        }
+    }
+
+    /// The state of the k-th branch that is present.
+    #[inline(always)]
+    pub(super) fn branch_state<T: Copy>(&self, internal: &[T; MOST_STATES], k: usize) -> T {
+        internal[k + usize::from(self.has_charge)]
+    }
+
+    /// The voltage at the membrane φ_m.
+    #[inline(always)]
+    pub fn membrane_voltage<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> N {
+        let charge = match self.device.port.source {
+            Source::Voltage if !self.has_charge => return load.source,
+            Source::Charge => load.source,
+            Source::Voltage | Source::Current => stage.internal[0],
+        };
+        charge / self.capacitance(self.stretch(stage.position))
+    }
+
+    /// λ⁴e, the capacitance.
+    #[inline(always)]
+    pub fn capacitance<N: Number>(&self, stretch: N) -> N {
+        let square = stretch * stretch;
+        let fourth = square * square;
+        if self.device.permittivity.is_constant() {
+            return fourth;
+        }
+        fourth * self.device.permittivity.at(stretch)[0]
+    }
+
+    /// The conductance of all leaks together, and its derivative by the voltage times the
+    /// voltage.
+    #[inline(always)]
+    pub(super) fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2] {
+        let port = &self.device.port;
+        let number = |value: f64| square.same(value);
+        let fixed = number(port.conductance);
+        if port.conductivity == 0.0 {
+            return [fixed, number(0.0)];
+        }
+        let weak = number(port.conductivity) * square * square;
+        if port.conduction_field.is_infinite() {
+            return [fixed + weak, number(0.0)];
+        }
+        let ratio = voltage.magnitude() * square * number(1.0 / port.conduction_field);
+        let strong = weak * ratio.exp();
+        [fixed + strong, strong * ratio]
+    }
+
+    /// x'' without the damping, its inertia, and the damping.
+    #[inline(always)]
+    pub(super) fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3] {
+        let device = self.device;
+        let p = Powers::of(self.stretch(stage.position));
+        let number = |value: f64| p.stretch.same(value);
+        let inverse_sixth = p.inverse_fourth * p.inverse_square;
+        let mut elastic = p.stretch - p.inverse_fifth;
+        if device.elasticity != Elasticity::NeoHookean {
+            elastic = elastic * self.stiffening(stage.position, p.square);
+        }
+        let surface = p.stretch
+            * number(self.quintic)
+                .mul_add(p.square, number(self.cubic))
+                .mul_add(p.square, number(self.linear));
+        let voltage = self.membrane_voltage(load, stage);
+        let mut electric = p.stretch * p.square;
+        if !device.permittivity.is_constant() {
+            let [value, slope] = device.permittivity.at(p.stretch);
+            electric = electric * (p.stretch * slope).mul_add(number(0.25), value);
+        }
+        let inertial = number(6.0) * inverse_sixth * p.inverse * stage.rate * stage.rate;
+        let mut force = inertial - elastic - surface
+            + (load.prestress + number(self.preload))
+            + voltage * voltage * electric;
+        for (k, branch) in device.present_branches().enumerate() {
+            let g = self.branch_state(&stage.internal, k);
+            let pull = p.stretch / g - g * g * p.inverse_fifth;
+            force = force - number(branch.modulus) * branch.stiffening(p.square / g) * pull;
+        }
+        let inertia = number(2.0).mul_add(inverse_sixth, number(device.sheet.aspect));
+        let damping = number(6.0 * device.damping.viscosity)
+            .mul_add(p.inverse_square, number(device.damping.linear));
+        [force, inertia, damping]
+    }
+
+    /// z' of the charge, where it is a state, and of the branches.
+    #[inline(always)]
+    pub(super) fn first_order<N: Number>(
+        &self,
+        load: &Load<N>,
+        stage: &Stage<N>,
+    ) -> [Slope<N>; MOST_STATES] {
+        let zero = stage.position.same(0.0);
+        let mut slopes = [Slope {
+            value: zero,
+            relaxation: zero,
+        }; MOST_STATES];
+        let p = Powers::of(self.stretch(stage.position));
+        if self.has_charge {
+            slopes[0] = self.charge_slope(load, stage, p.square);
+        }
+        for (k, branch) in self.device.present_branches().enumerate() {
+            let g = self.branch_state(&stage.internal, k);
+            slopes[k + usize::from(self.has_charge)] = branch.slope(g, &p);
+        }
+        slopes
+    }
+
+    #[inline(always)]
+    fn charge_slope<N: Number>(&self, load: &Load<N>, stage: &Stage<N>, square: N) -> Slope<N> {
+        let number = |value: f64| square.same(value);
+        let one = number(1.0);
+        let capacitance = self.capacitance(self.stretch(stage.position));
+        let voltage = stage.internal[0] / capacitance;
+        let [conductance, steeper] = self.conductance(voltage, square);
+        let leak = voltage * conductance;
+        let port = &self.device.port;
+        if port.source == Source::Current {
+            return Slope {
+                value: load.source - leak,
+                relaxation: (conductance + steeper) / capacitance,
+            };
+        }
+        let series = number(1.0 / port.resistance);
+        Slope {
+            value: (load.source - voltage) * series - leak,
+            relaxation: (series + conductance + steeper) * (one / capacitance),
+        }
+    }
+}
+
+impl Branch {
+    /// h of its spring at s = λ²/g.
+    #[inline(always)]
+    pub(super) fn stiffening<N: Number>(&self, s: N) -> N {
+        let one = s.same(1.0);
+        if self.limit.is_infinite() {
+            return one;
+        }
+        one / (one - invariant(s) * s.same(1.0 / self.limit))
+    }
+
+    /// g' of its state g.
+    #[inline(always)]
+    fn slope<N: Number>(&self, g: N, p: &Powers<N>) -> Slope<N> {
+        let number = |value: f64| g.same(value);
+        let third = number(1.0 / (3.0 * self.relaxation_time));
+        let s = p.square / g;
+        let h = self.stiffening(s);
+        let pull = p.square - g * g * g * p.inverse_fourth;
+        let mut relaxation = number(3.0) * g * g * p.inverse_fourth * h;
+        if self.limit.is_finite() {
+            // ∂h/∂g = −(2h²/J)(s − s⁻²)/g.
+            let steep = (s - number(1.0) / (s * s)) / g;
+            relaxation = relaxation + pull * h * h * number(2.0 / self.limit) * steep;
+        }
+        Slope {
+            value: third * pull * h,
+            relaxation: third * relaxation,
+        }
+    }
+}

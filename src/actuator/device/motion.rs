@@ -1,0 +1,227 @@
+//! A real actuator under a drive as a system that the integrator follows.
+
+use serde::{Deserialize, Serialize};
+
+use super::elasticity::Elasticity;
+use super::equation::{Load, LocalDevice, Powers};
+use super::parameters::{Device, Source};
+use crate::actuator::Drive;
+use crate::solver::coupled::{
+    CoupledEquation, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage,
+};
+use crate::solver::double::Double;
+use crate::solver::number::Number;
+
+/// Nearer to a locking stretch than this part of it, the stretch is counted from there.
+const NEAR_WALL: f64 = 0.2;
+
+/// And farther than this part no more.
+const FAR_FROM_WALL: f64 = 0.3;
+
+/// A charge smaller than this, in units of Q0, is not resolved relative to itself.
+const SMALL_CHARGE: f64 = 1e-4;
+
+/// A real actuator under a drive, whose voltage stands for whatever the source imposes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DeviceMotion {
+    /// The actuator.
+    pub device: Device,
+    /// The source and the prestress.
+    pub drive: Drive,
+    /// Whether energies supplied and lost are summed up (see [`super::energy`]).
+    pub records_energy: bool,
+}
+
+impl CoupledEquation for DeviceMotion {
+    type Local<'a> = LocalDevice<'a>;
+
+    fn at(&self, time: &Double, origin: &Double) -> LocalDevice<'_> {
+        LocalDevice::new(&self.device, &self.drive, time, origin)
+    }
+
+    fn states(&self) -> usize {
+        usize::from(self.device.has_charge_state()) + self.device.present_branches().count()
+    }
+
+    fn integrals(&self) -> usize {
+        if self.records_energy {
+            MOST_INTEGRALS
+        } else {
+            0
+        }
+    }
+
+    fn is_autonomous(&self) -> bool {
+        self.drive.is_constant()
+    }
+
+    fn is_time_reversible(&self) -> bool {
+        self.device.damping.is_none() && self.states() == 0
+    }
+
+    /// Damping and branches may relax at any rate, and the charge does with a small resistance.
+    fn is_stiff(&self) -> bool {
+        !self.device.damping.is_none() || self.states() > 0
+    }
+
+    fn awaits_event(&self) -> bool {
+        self.device.breakdown.is_some()
+    }
+
+    fn origin_near(&self, position: f64, present: Double) -> Double {
+        let Elasticity::Gent(locking) = &self.device.elasticity else {
+            return Double::ZERO;
+        };
+        let distance = |wall: Double| present.sub(wall).plus(position).value().abs();
+        let [above, below] = [locking.largest(), locking.smallest()];
+        let wall = if distance(above) < distance(below) {
+            above
+        } else {
+            below
+        };
+        let part = if wall == present {
+            FAR_FROM_WALL
+        } else {
+            NEAR_WALL
+        };
+        if distance(wall) < part * wall.high {
+            wall
+        } else {
+            Double::ZERO
+        }
+    }
+}
+
+impl LocalCoupledEquation for LocalDevice<'_> {
+    type Load<N: Number> = Load<N>;
+
+    #[inline(always)]
+    fn load<N: Number>(&self, offset: N) -> Load<N> {
+        Load {
+            source: self.drive.voltage(offset),
+            prestress: self.drive.prestress(offset),
+        }
+    }
+
+    #[inline(always)]
+    fn slopes<N: Number>(&self, load: Load<N>, stage: &Stage<N>) -> [Slope<N>; MOST_STATES] {
+        self.first_order(&load, stage)
+    }
+
+    #[inline(always)]
+    fn acceleration<N: Number>(&self, load: Load<N>, stage: &Stage<N>) -> Slope<N> {
+        let [force, inertia, damping] = self.forces(&load, stage);
+        let relaxation = damping / inertia;
+        Slope {
+            value: force / inertia - relaxation * stage.rate,
+            relaxation,
+        }
+    }
+
+    fn powers(
+        &self,
+        offset: f64,
+        stage: &Stage,
+        slopes: &[f64; MOST_STATES],
+    ) -> [f64; MOST_INTEGRALS] {
+        self.powers_at(offset, stage, slopes).all()
+    }
+
+    fn admits(&self, stage: &Stage) -> bool {
+        let stretch = self.stretch(stage.position);
+        let device = self.device;
+        let elastic = match &device.elasticity {
+            Elasticity::Gent(locking) => {
+                let [largest, smallest] = self.walls();
+                stage.position < largest
+                    && stage.position > smallest
+                    && self.gap(locking, stage.position) > 0.0
+            }
+            _ => true,
+        };
+        let square = stretch * stretch;
+        let branches = device.present_branches().enumerate().all(|(k, branch)| {
+            let g = self.branch_state(&stage.internal, k);
+            g > 0.0 && super::elasticity::invariant(square / g) < branch.limit
+        });
+        let permittivity =
+            device.permittivity.is_constant() || device.permittivity.at(stretch)[0] > 0.0;
+        stretch > 0.0 && elastic && branches && permittivity
+    }
+
+    /// How far the true field is below that of breakdown.
+    fn margin(&self, offset: f64, stage: &Stage) -> f64 {
+        let load = self.load(offset);
+        self.breakdown_margin(&load, stage)
+    }
+
+    fn load_frequency(&self) -> f64 {
+        2.0 * self.drive.frequency()
+    }
+
+    /// √(stiffness/inertia) with the terms of the stiffness added up by size, and the rate of
+    /// approach to a singularity.
+    fn natural_frequency(&self, stage: &Stage) -> f64 {
+        let device = self.device;
+        let p = Powers::of(self.stretch(stage.position));
+        let sixth = p.inverse_fourth * p.inverse_square;
+        let mut stiffness = 1.0 + 5.0 * sixth;
+        match &device.elasticity {
+            Elasticity::NeoHookean => {}
+            Elasticity::Gent(locking) => {
+                let h = 1.0 / self.gap(locking, stage.position).abs();
+                let pull = p.stretch - p.inverse_fifth;
+                stiffness = stiffness * h + 4.0 * pull * pull * h * h / locking.limit();
+            }
+            Elasticity::Yeoh { second, third } => {
+                let i = super::elasticity::invariant(p.square);
+                stiffness *= 1.0 + 6.0 * second.abs() * i + 15.0 * third.abs() * i * i;
+            }
+        }
+        let [linear, cubic, quintic] = self.surface();
+        stiffness += linear.abs() + p.square * (3.0 * cubic.abs() + p.square * 5.0 * quintic.abs());
+        for (k, branch) in device.present_branches().enumerate() {
+            let g = self.branch_state(&stage.internal, k);
+            let h = branch.stiffening(p.square / g).abs();
+            stiffness += branch.modulus * h * (1.0 / g + 5.0 * g * g * sixth);
+        }
+        let voltage = self.largest_membrane_voltage(stage);
+        stiffness += 8.0 * voltage * voltage * p.square;
+        let inertia = device.sheet.aspect + 2.0 * sixth;
+        (stiffness / inertia).sqrt() + stage.rate.abs() / self.size_of(stage.position)
+    }
+
+    fn sizes(&self, stage: &Stage) -> Sizes {
+        let position = self.size_of(stage.position);
+        let frequency = self.natural_frequency(stage);
+        let mut internal = [1.0; MOST_STATES];
+        let mut charge = 0.0;
+        if self.device.has_charge_state() {
+            let source = self.drive.largest_voltage();
+            let driven = match self.device.port.source {
+                Source::Voltage => source * self.capacitance(self.stretch(stage.position)),
+                _ => source / frequency,
+            };
+            charge = stage.internal[0].abs().max(driven).max(SMALL_CHARGE);
+            internal[0] = charge;
+        }
+        let first = usize::from(self.device.has_charge_state());
+        for place in 0..self.device.present_branches().count() {
+            internal[first + place] = stage.internal[first + place].abs();
+        }
+        Sizes {
+            position,
+            rate: position * frequency,
+            internal,
+            integrals: self.energy_size(stage, charge, frequency),
+        }
+    }
+
+    /// The stretch, or the distance from where the material locks.
+    fn size_of(&self, position: f64) -> f64 {
+        let [largest, smallest] = self.walls();
+        self.stretch(position)
+            .min(largest - position)
+            .min(position - smallest)
+    }
+}

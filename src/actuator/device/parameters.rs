@@ -1,0 +1,204 @@
+//! What describes a real actuator: the sheet of the paper with a load, losses, stiffening and an
+//! electrical port. Everything is nondimensional, in the units of [`super::super::scales`], and
+//! off by default.
+
+use serde::{Deserialize, Serialize};
+
+use super::elasticity::Elasticity;
+use crate::actuator::{Coefficients, Parameters};
+
+/// Maxwell branches that an actuator may have.
+pub const MOST_BRANCHES: usize = 3;
+
+/// A real actuator.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Device {
+    /// The sheet (Eq. 15 of the paper). Its aspect c is L²/T² with the thickness T of the whole
+    /// stack; a load mass adds 12m/(ρT³).
+    pub sheet: Parameters,
+    /// The law of its elastic stiffness.
+    pub elasticity: Elasticity,
+    /// A spring between opposite edges.
+    pub spring: Spring,
+    /// How the permittivity depends on the stretch.
+    pub permittivity: Permittivity,
+    /// Viscous losses.
+    pub damping: Damping,
+    /// Maxwell branches; those with a modulus of 0 are absent.
+    pub branches: [Branch; MOST_BRANCHES],
+    /// The electrical port.
+    pub port: Port,
+    /// The true field at which the material breaks down.
+    pub breakdown: Option<Breakdown>,
+}
+
+/// A spring between opposite edges, in each direction: force k̄(λ − l̄).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spring {
+    /// k̄ = k/(µT).
+    pub stiffness: f64,
+    /// l̄, the stretch at which it is relaxed.
+    pub rest: f64,
+}
+
+/// e(λ) = ε(λ)/ε(1) = 1 + k1 x + k2 x² + k3 x³, x = λ − 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Permittivity {
+    /// k1, k2, k3.
+    pub terms: [f64; 3],
+}
+
+/// Viscous losses.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Damping {
+    /// b̄ = b/(µTt0), a dashpot between opposite edges in each direction.
+    pub linear: f64,
+    /// η̄ = η/(µt0), Kelvin–Voigt: a Newtonian viscosity beside the elastic stress.
+    pub viscosity: f64,
+}
+
+/// A Maxwell branch: a spring in series with a Newtonian dashpot (C. C. Foo, S. Cai, S. J. A.
+/// Koh, S. Bauer, Z. Suo, J. Appl. Phys. 111 (2012) 034102). Its state is g = ξ², the squared
+/// stretch of the dashpot.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Branch {
+    /// m = µ_k/µ.
+    pub modulus: f64,
+    /// τ̄ = τ/t0.
+    pub relaxation_time: f64,
+    /// The limit J of its own Gent spring; infinite for a neo-Hookean one.
+    pub limit: f64,
+}
+
+/// What the source imposes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Source {
+    /// The supply voltage.
+    Voltage,
+    /// The current into the actuator.
+    Current,
+    /// The charge on the electrodes.
+    Charge,
+}
+
+/// The electrical port.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Port {
+    /// What the source imposes.
+    pub source: Source,
+    /// r_s = R_s C0/t0, the resistance in series; 0 for an ideal source.
+    pub resistance: f64,
+    /// ḡ_p = G_p t0/C0, a fixed conductance in parallel.
+    pub conductance: f64,
+    /// σ̄ = σ t0/ε, the conductivity of the material at a weak field.
+    pub conductivity: f64,
+    /// Ē_c, the field over which the conductivity grows by e: σ̄ exp(E/Ē_c); infinite for none.
+    pub conduction_field: f64,
+}
+
+/// The breakdown field E_b λⁿ.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Breakdown {
+    /// E_b at λ = 1, in units of V0/H.
+    pub field: f64,
+    /// n.
+    pub exponent: f64,
+}
+
+impl Device {
+    /// The actuator of the paper: nothing beside the sheet, an ideal source of voltage.
+    #[must_use]
+    pub const fn plain(sheet: Parameters) -> Device {
+        Device {
+            sheet,
+            elasticity: Elasticity::NeoHookean,
+            spring: Spring {
+                stiffness: 0.0,
+                rest: 1.0,
+            },
+            permittivity: Permittivity { terms: [0.0; 3] },
+            damping: Damping {
+                linear: 0.0,
+                viscosity: 0.0,
+            },
+            branches: [Branch::NONE; MOST_BRANCHES],
+            port: Port {
+                source: Source::Voltage,
+                resistance: 0.0,
+                conductance: 0.0,
+                conductivity: 0.0,
+                conduction_field: f64::INFINITY,
+            },
+            breakdown: None,
+        }
+    }
+
+    /// Whether the motion is that of the paper's equation with a load mass and a spring folded
+    /// into its coefficients and the prestress, [`Device::folded`] and [`Spring::preload`].
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.elasticity == Elasticity::NeoHookean
+            && self.permittivity.is_constant()
+            && self.damping.is_none()
+            && self.branches.iter().all(|branch| branch.modulus == 0.0)
+            && self.port.source == Source::Voltage
+            && self.port.resistance == 0.0
+            && self.breakdown.is_none()
+    }
+
+    /// The coefficients of Eq. 16, the spring folded in.
+    #[must_use]
+    pub fn folded(&self) -> Coefficients {
+        let mut folded = Coefficients::fold(&self.sheet);
+        folded.linear += self.spring.stiffness;
+        folded
+    }
+
+    /// Whether the charge is a state: it neither follows from the voltage nor is imposed.
+    #[must_use]
+    pub fn has_charge_state(&self) -> bool {
+        match self.port.source {
+            Source::Voltage => self.port.resistance > 0.0,
+            Source::Current => true,
+            Source::Charge => false,
+        }
+    }
+
+    /// The branches that are present.
+    pub fn present_branches(&self) -> impl Iterator<Item = &Branch> {
+        self.branches.iter().filter(|branch| branch.modulus > 0.0)
+    }
+}
+
+impl Spring {
+    /// k̄l̄, what it adds to the prestress.
+    #[must_use]
+    pub fn preload(&self) -> f64 {
+        self.stiffness * self.rest
+    }
+}
+
+impl Permittivity {
+    /// Whether it keeps its value.
+    #[must_use]
+    pub fn is_constant(&self) -> bool {
+        self.terms == [0.0; 3]
+    }
+}
+
+impl Damping {
+    /// Whether nothing is lost.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.linear == 0.0 && self.viscosity == 0.0
+    }
+}
+
+impl Branch {
+    /// No branch.
+    pub const NONE: Branch = Branch {
+        modulus: 0.0,
+        relaxation_time: 1.0,
+        limit: f64::INFINITY,
+    };
+}

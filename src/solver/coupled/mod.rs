@@ -1,0 +1,193 @@
+//! The integrator of one second-order equation x'' = f(t, x, x', z) and a few of first order,
+//! z' = g(t, x, x', z), with dissipation, stiff or not.
+//!
+//! * `rule`: nodes and weights, Gauss and Radau IIA;
+//! * [`stages`]: one step of collocation;
+//! * `piece`: the polynomials that a step leaves behind;
+//! * [`trajectory`]: steps one after another.
+//!
+//! Method: x is found by fixed-point iteration, as for the plain equation. What relaxes, the
+//! first-order states and a damped rate, is solved by Newton's method in each iteration with x
+//! held: for one state at a time that is a linear system in its slopes at the nodes. So the
+//! iteration converges as that of the mechanics alone, however fast a state relaxes. Integrals
+//! along the motion (energies supplied and lost) do not act back; they are summed up once the
+//! stages are known.
+
+mod piece;
+mod rule;
+pub mod stages;
+pub mod trajectory;
+mod validation;
+
+pub use trajectory::{Event, Failure, Progress, Trajectory};
+
+use serde::{Deserialize, Serialize};
+
+use super::State;
+use super::double::Double;
+use super::number::Number;
+
+/// First-order states that a system may have.
+pub const MOST_STATES: usize = 4;
+
+/// Integrals along the motion that a system may have.
+pub const MOST_INTEGRALS: usize = 6;
+
+/// Position, rate, first-order states and integrals. What a system does not have is 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FullState {
+    /// x, counted from the origin of the position, and x'.
+    pub motion: State,
+    /// z.
+    pub internal: [f64; MOST_STATES],
+    /// The integrals so far.
+    pub integrals: [f64; MOST_INTEGRALS],
+}
+
+/// Position, rate and first-order states at one time, or at lanes of times.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<N = f64> {
+    /// x, counted from the origin of the position.
+    pub position: N,
+    /// x'.
+    pub rate: N,
+    /// z.
+    pub internal: [N; MOST_STATES],
+}
+
+/// The derivative y' of a state, and how fast the state relaxes.
+#[derive(Clone, Copy, Debug)]
+pub struct Slope<N = f64> {
+    /// y'.
+    pub value: N,
+    /// −∂y'/∂y, not negative: only a part that relaxes, whatever else y' depends on.
+    pub relaxation: N,
+}
+
+/// Typical sizes, to which errors are compared.
+#[derive(Clone, Copy, Debug)]
+pub struct Sizes {
+    /// Of the position.
+    pub position: f64,
+    /// Of the rate.
+    pub rate: f64,
+    /// Of the first-order states.
+    pub internal: [f64; MOST_STATES],
+    /// Of the integrals, all alike.
+    pub integrals: f64,
+}
+
+/// A system of one second-order equation and some of first order.
+pub trait CoupledEquation {
+    /// The system seen from a time.
+    type Local<'a>: LocalCoupledEquation
+    where
+        Self: 'a;
+
+    /// The system with the origin of time moved to `time`, that of the position to `origin`.
+    fn at(&self, time: &Double, origin: &Double) -> Self::Local<'_>;
+
+    /// The number of first-order states.
+    fn states(&self) -> usize;
+
+    /// The number of integrals.
+    fn integrals(&self) -> usize;
+
+    /// Whether no derivative depends on the time.
+    fn is_autonomous(&self) -> bool;
+
+    /// Whether the motion runs back the way it came: f(x, −x') = f(x, x') and no first-order
+    /// state. Together with autonomy it makes a motion between two turning points repeat.
+    fn is_time_reversible(&self) -> bool {
+        false
+    }
+
+    /// Whether anything may relax faster than the motion goes, so that Radau nodes are needed.
+    fn is_stiff(&self) -> bool;
+
+    /// Whether an event besides the limits of the position is awaited.
+    fn awaits_event(&self) -> bool {
+        false
+    }
+
+    /// The origin from which the position is best counted at `position`, counted from the
+    /// present origin: near a singularity of f, the singularity.
+    fn origin_near(&self, _position: f64, present: Double) -> Double {
+        present
+    }
+}
+
+/// A [`CoupledEquation`] with its origins moved.
+pub trait LocalCoupledEquation {
+    /// What the derivatives need to know of the time.
+    type Load<N: Number>: Copy;
+
+    /// The load at `offset` after the origin of time.
+    fn load<N: Number>(&self, offset: N) -> Self::Load<N>;
+
+    /// z' of the first-order states.
+    fn slopes<N: Number>(&self, load: Self::Load<N>, stage: &Stage<N>) -> [Slope<N>; MOST_STATES];
+
+    /// x''.
+    fn acceleration<N: Number>(&self, load: Self::Load<N>, stage: &Stage<N>) -> Slope<N>;
+
+    /// The derivatives of the integrals at `offset`, where z' has these `slopes`.
+    fn powers(
+        &self,
+        offset: f64,
+        stage: &Stage,
+        slopes: &[f64; MOST_STATES],
+    ) -> [f64; MOST_INTEGRALS];
+
+    /// Whether the equation is defined here.
+    fn admits(&self, stage: &Stage) -> bool;
+
+    /// The margin that vanishes where the event besides the limits happens.
+    fn margin(&self, _offset: f64, _stage: &Stage) -> f64 {
+        f64::INFINITY
+    }
+
+    /// The fastest angular frequency with which the load alternates, 0 where it does not.
+    fn load_frequency(&self) -> f64;
+
+    /// How fast the motion from here changes by itself, without what relaxes, roughly.
+    fn natural_frequency(&self, stage: &Stage) -> f64;
+
+    /// Typical sizes around this stage.
+    fn sizes(&self, stage: &Stage) -> Sizes;
+
+    /// The typical size of a position alone.
+    fn size_of(&self, position: f64) -> f64;
+}
+
+impl FullState {
+    /// A state with nothing but a position and a rate.
+    #[must_use]
+    pub fn of(motion: State) -> FullState {
+        FullState {
+            motion,
+            internal: [0.0; MOST_STATES],
+            integrals: [0.0; MOST_INTEGRALS],
+        }
+    }
+
+    /// The state as a stage.
+    #[must_use]
+    pub fn stage(&self) -> Stage {
+        Stage {
+            position: self.motion.position,
+            rate: self.motion.rate,
+            internal: self.internal,
+        }
+    }
+
+    /// Whether all its numbers are finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let State { position, rate } = self.motion;
+        let mut all = [position, rate].into_iter();
+        all.all(f64::is_finite)
+            && self.internal.iter().all(|z| z.is_finite())
+            && self.integrals.iter().all(|sum| sum.is_finite())
+    }
+}

@@ -1,0 +1,95 @@
+//! Where a step meets a limit of the position, or the margin of the equation vanishes.
+
+use super::{Event, Piece, Trajectory};
+use crate::solver::coupled::{CoupledEquation, LocalCoupledEquation, Stage};
+use crate::solver::limits::Limits;
+use crate::solver::segment::{PARTS, Segment};
+
+impl Trajectory {
+    /// Looks for the first event in the last piece, whose nodes lie in the `range`.
+    pub(super) fn look_for_events<E: CoupledEquation>(
+        &mut self,
+        equation: &E,
+        local: &E::Local<'_>,
+        [lowest, highest]: [f64; 2],
+    ) {
+        let awaits = self.awaits_margin && equation.awaits_event();
+        let limits = self.limits;
+        let Some(piece) = self.pieces.last_mut() else {
+            return;
+        };
+        let from_origin = |limit: f64| -piece.origin.plus(-limit).value();
+        let limits = Limits {
+            lower: from_origin(limits.lower),
+            upper: from_origin(limits.upper),
+        };
+        let beyond = 0.25 * (highest - lowest);
+        let contact = limits.first_contact(&mut piece.segment, lowest - beyond..=highest + beyond);
+        let mut stop = contact.map(|(limit, offset)| (Event::Limit(limit), offset));
+        let Piece { begin, .. } = *piece;
+        if awaits {
+            piece.segment.expand();
+            let segment = piece.segment;
+            let margin = |_: &Segment, offset: f64| {
+                let internal = self
+                    .rest
+                    .as_ref()
+                    .map_or(self.start.internal, |rest| rest.internal(offset));
+                let stage = Stage {
+                    position: segment.position(offset),
+                    rate: segment.rate(offset),
+                    internal,
+                };
+                local.margin(offset, &stage)
+            };
+            let until = stop.map_or(segment.length(), |(_, offset)| offset);
+            if let Some(offset) = first_below(&segment, until, margin) {
+                stop = Some((Event::Margin, offset));
+            }
+        }
+        self.stop = stop.map(|(event, offset)| (event, begin.plus(offset)));
+    }
+}
+
+/// The first offset up to `until` at which `margin` is not above 0.
+fn first_below(
+    segment: &Segment,
+    until: f64,
+    margin: impl Fn(&Segment, f64) -> f64,
+) -> Option<f64> {
+    let at = |i: usize| i as f64 / PARTS as f64 * until;
+    let mut values = [0.0; PARTS + 1];
+    for i in 0..=PARTS {
+        values[i] = margin(segment, at(i));
+        if values[i] <= 0.0 {
+            if i == 0 {
+                return Some(0.0);
+            }
+            return Some(segment.crossing(at(i - 1), at(i), &margin));
+        }
+        // A dip between three points may go below 0 and come back.
+        if i >= 2 && values[i - 1] <= values[i - 2] && values[i - 1] <= values[i] {
+            let lowest = lowest_between(at(i - 2), at(i), |t| margin(segment, t));
+            if margin(segment, lowest) <= 0.0 {
+                return Some(segment.crossing(at(i - 2), lowest, &margin));
+            }
+        }
+    }
+    None
+}
+
+/// The lowest point of a dip between two offsets, by golden sections.
+fn lowest_between(mut from: f64, mut to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let inner = |from: f64, to: f64| [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
+    // 0.618⁴⁰ of the bracket is the width at which rounding hides the dip.
+    for _ in 0..40 {
+        let [low, high] = inner(from, to);
+        if f(low) < f(high) {
+            to = high;
+        } else {
+            from = low;
+        }
+    }
+    0.5 * (from + to)
+}
