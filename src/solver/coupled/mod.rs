@@ -3,6 +3,7 @@
 //!
 //! * `rule`: nodes and weights, Gauss and Radau IIA;
 //! * [`stages`]: one step of collocation;
+//! * `course`: one state over the nodes of a step;
 //! * `piece`: the polynomials that a step leaves behind;
 //! * [`trajectory`]: steps one after another.
 //!
@@ -13,6 +14,7 @@
 //! along the motion (energies supplied and lost) do not act back; they are summed up once the
 //! stages are known.
 
+mod course;
 mod piece;
 mod rule;
 pub mod stages;
