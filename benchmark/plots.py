@@ -9,8 +9,9 @@ from cases import CASES, ROOT
 from ratios import FLOOR
 
 sys.path.insert(0, str(ROOT / "studies"))
-import figure_style as style  # noqa: E402  (found by the line above)
-import matplotlib.pyplot as plt  # noqa: E402  (after figure_style has chosen the backend)
+import matplotlib.pyplot as plt
+
+import figure_style as style
 
 OURS = {"color": style.COLOURS[1], "linewidth": 2.4, "zorder": 4}
 LOOKS = {

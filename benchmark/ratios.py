@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 
 from cases import CASES
@@ -31,7 +32,7 @@ def time_at(front: list[tuple[float, float]], error: float) -> float | None:
     accurate. A method that is always more accurate is taken at its fastest."""
     if not front or front[0][0] > error:
         return None
-    for (e0, t0), (e1, t1) in zip(front, front[1:]):
+    for (e0, t0), (e1, t1) in itertools.pairwise(front):
         if e0 <= error < e1:
             part = math.log(error / e0) / math.log(e1 / e0)
             return t0 * (t1 / t0) ** part

@@ -5,8 +5,8 @@ from __future__ import annotations
 import figures
 import references
 import turning_points
-from dielectric_actuator import Actuator
 from comparison import Comparison
+from dielectric_actuator import Actuator
 from pull_in_search import pull_in_bracket
 
 TOLERANCE = 1e-12
@@ -42,7 +42,7 @@ def families_of(cases: list[references.SurfaceEffects]) -> dict[str, list[int]]:
 
 def oscillations(actuator: Actuator, prestress: float, table: Comparison) -> dict[str, list[figures.Oscillation]]:
     """Responses of Fig. 2 or 3 to a voltage step for varied surface parameters; periods and turns go into `table`."""
-    orbits = [orbit for orbit in references.dc_orbits() if orbit.case.S == prestress]
+    orbits = [orbit for orbit in references.dc_orbits() if prestress == orbit.case.S]
     span = 1.02 * 2 * max(orbit.period for orbit in orbits)
     found = []
     table.heading(f"DC, phi = {orbits[0].phi:g}, S = {prestress:g}: period T, thickness stretch at the turn")

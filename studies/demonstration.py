@@ -19,9 +19,9 @@ import figures
 import references
 import trajectories
 import turning_points
-from dielectric_actuator import Actuator, packed_fmu
 from comparison import Comparison
 from dc_motion import MOTION, PULL_IN_DISTANCE, TOLERANCE, oscillations, pull_in
+from dielectric_actuator import Actuator, packed_fmu
 from progress import Progress
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[1] / "target" / "demonstration"

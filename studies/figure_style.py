@@ -13,9 +13,9 @@ import matplotlib
 
 matplotlib.use("Agg")  # figures are files; no display is needed or opened
 
-import matplotlib.pyplot as plt  # noqa: E402  (the backend must be chosen first)
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 SYMBOLS = {
     "time": r"$\bar{t}$",

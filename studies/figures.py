@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+
+import figure_style as style
 from turning_points import turning_points
 
 
@@ -116,7 +117,8 @@ def transition_handles(parameter: str, transitions: list[Transition], distance: 
         Line2D([], [], color=colour, label=style.setting(**{parameter: transition.value}))
         for colour, transition in zip(style.COLOURS, transitions)
     ]
-    return colours + [
+    return [
+        *colours,
         Line2D([], [], color=style.GREY, linestyle=BELOW, label=f"{voltage} $-$ {distance:g}"),
         Line2D([], [], color=style.GREY, linestyle=ABOVE, label=f"{voltage} + {distance:g}"),
     ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import NamedTuple
 
 import references
@@ -29,7 +30,7 @@ def follow(actuator: Actuator, name: str, communication_step: float, tolerance: 
     rows = references.trajectory(name)
     actuator.start(references.TRAJECTORY_SCENES[name], tolerance=tolerance)
     worst = Worst("lambda", 0.0, 1.0, 1.0)
-    for previous, row in zip(rows, rows[1:]):
+    for previous, row in itertools.pairwise(rows):
         span = row["t"] - previous["t"]
         whole_steps = int(span / communication_step + 1e-9)
         for _ in range(whole_steps):

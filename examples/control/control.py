@@ -16,17 +16,17 @@ from pathlib import Path
 # the matrices are small: threads of the linear algebra would cost more than they bring
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy as np  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
 
 from dielectric_actuator import Actuator, packed_fmu
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
-import figure_style as style  # noqa: E402  (the path must be set first)
-from controllers import FeedForwardPI, Predictive  # noqa: E402
-from loop import RESERVE, SCENE, Run, Scenario, close_loop  # noqa: E402
+import figure_style as style
+from controllers import FeedForwardPI, Predictive
+from loop import RESERVE, SCENE, Run, Scenario, close_loop
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "control"
 CONTROLLERS = {"PI with feed-forward": FeedForwardPI, "predictive": Predictive}

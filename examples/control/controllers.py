@@ -38,7 +38,7 @@ class FeedForwardPI:
     linear in what the controller sets. The integral stands still while the voltage is at a bound.
     """
 
-    P, I, D = 4.0, 0.3, 25.0
+    P, I, D = 4.0, 0.3, 25.0  # noqa: E741  (the field's names)
     STRETCHES = np.linspace(0.95, 1.6, 66)
 
     def __init__(self, model: Actuator, scene: Mapping[str, float], target: Target, period: float):

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dielectric_actuator import Actuator
 from controllers import Measured, Target
+from dielectric_actuator import Actuator
 
 SCENE = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.0, "S": 0.2}
 """An actuator that rests at λ = 1 without voltage, and that pull-in destroys."""

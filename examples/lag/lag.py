@@ -22,7 +22,7 @@ from dielectric_actuator import Actuator, packed_fmu
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
-import figure_style as style  # noqa: E402  (the path must be set first)
+import figure_style as style
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "lag"
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}

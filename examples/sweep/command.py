@@ -10,11 +10,13 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
-from dielectric_actuator import packed_fmu
-from sweep import AnotherSweep, Unfinished, grid, sweep  # first, since it makes the studies importable
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
+
 
 import figure_style as style
+from dielectric_actuator import packed_fmu
 from scenes import Measure
+from sweep import AnotherSweep, Unfinished, grid, sweep
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "sweep"
 

@@ -7,16 +7,20 @@ Writes frequency_response.parquet and frequency_response.png. The voltage is phi
 
 from __future__ import annotations
 
+import sys
 from functools import partial
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pyarrow as pa
-from command import column, parse, run
 from matplotlib.figure import Figure
-from scenes import frequency_response
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
+from command import column, parse, run
+from scenes import frequency_response
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIME = 2000.0

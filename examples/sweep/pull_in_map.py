@@ -7,16 +7,20 @@ Writes pull_in_map.parquet and pull_in_map.png. Every scene starts from rest at 
 
 from __future__ import annotations
 
+import sys
 from functools import partial
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
 import pyarrow as pa
-from command import column, parse, run
 from matplotlib.figure import Figure
-from scenes import pull_in
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
+from command import column, parse, run
+from scenes import pull_in
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.0}
 STOP_TIME = 500.0

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import csv
 import os
+import sys
 import tempfile
 import time
 from functools import partial
@@ -18,14 +19,17 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-from command import column, parse
 from fmpy import simulate_fmu
 from matplotlib.figure import Figure
-from scenes import frequency_response
-from sweep import grid, local_cluster, sweep
+
+from command import column, parse
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
 from dielectric_actuator import Actuator
+from scenes import frequency_response
+from sweep import grid, local_cluster, sweep
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIMES = (2000.0, 50000.0)

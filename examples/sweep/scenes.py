@@ -13,8 +13,9 @@ import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from dielectric_actuator import Actuator
 from distributed import WorkerPlugin, get_worker
+
+from dielectric_actuator import Actuator
 
 Measure = Callable[[Actuator, Mapping[str, float]], Mapping[str, float]]
 

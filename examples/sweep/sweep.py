@@ -17,7 +17,6 @@ from __future__ import annotations
 import hashlib
 import inspect
 import itertools
-import sys
 import time
 import uuid
 from collections.abc import Mapping, Sequence
@@ -32,12 +31,8 @@ from distributed import Client, LocalCluster, as_completed
 from distributed.deploy import Cluster
 from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 
+import scenes as worker_side
 from dielectric_actuator import packed_fmu
-
-STUDIES = Path(__file__).resolve().parents[2] / "studies"
-sys.path.insert(0, str(STUDIES))
-
-import scenes as worker_side  # noqa: E402
 
 FINGERPRINT = b"sweep"
 BATCH = 100
@@ -66,7 +61,7 @@ def sweep(
     cluster: str | Cluster | None = None,
     workers: int | None = None,
     batch: int = BATCH,
-    fmu: Path = packed_fmu(),
+    fmu: Path | None = None,
 ) -> pa.Table:
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
@@ -76,6 +71,7 @@ def sweep(
     `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost.
     """
     scenes = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
+    fmu = fmu or packed_fmu()
     results = _Results(output, _fingerprint(measure, scenes, fmu))
     count = len(next(iter(scenes.values())))
     pending = np.setdiff1d(np.arange(count), results.finished())

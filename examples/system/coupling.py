@@ -45,9 +45,7 @@ class Coupling:
             unit.close()
         shutil.rmtree(self._folder)
 
-    def run(
-        self, outputs: list[str], *, stop_time: float, step: float, order: int, tolerance: float
-    ) -> np.ndarray:
+    def run(self, outputs: list[str], *, stop_time: float, step: float, order: int, tolerance: float) -> np.ndarray:
         """Run from 0 to `stop_time` (a multiple of `step`) and return one row a communication point.
 
         `outputs` are names like ``leader.lambda``; connections carry derivatives up to `order` (0: values

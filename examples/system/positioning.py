@@ -24,9 +24,9 @@ from dielectric_actuator import packed_fmu
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
-import figure_style as style  # noqa: E402  (the path must be set first)
-from coupling import Coupling  # noqa: E402
-from pack import DEFAULT_OUTPUT, pack_system  # noqa: E402
+import figure_style as style
+from coupling import Coupling
+from pack import DEFAULT_OUTPUT, pack_system
 
 DEFAULT_STOP_TIME = 200.0
 STEPS = (2.0, 1.0, 0.5, 0.25, 0.125, 0.0625)

@@ -17,15 +17,15 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-import figure_style as style
 import numpy as np
-from dielectric_actuator import Actuator, packed_fmu
-from progress import Progress
 
+import figure_style as style
+from dielectric_actuator import Actuator, packed_fmu
 from paper import chaos, dc, driven, escape, maps, report, resonance, resonance_entries, slips, thresholds
 from paper.entries import Entry
 from paper.scenes import BRANCHES, printed_resonances
 from paper.workers import Workers
+from progress import Progress
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "paper"
 GALLERY = ["figure_04", "figure_08", "default_tolerance", "map_escape"]

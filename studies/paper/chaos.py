@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-import turning_points
-from dielectric_actuator import Actuator
-from comparison import Row
 from matplotlib.axes import Axes
-from references import SurfaceEffects
 
+import figure_style as style
+import turning_points
+from comparison import Row
+from dielectric_actuator import Actuator
 from paper.entries import Claim, Entry, Grid
 from paper.equation import Cases
 from paper.independent import ODE45_ATOL, ODE45_RTOL, DrivenRuns, Indicators, embedded_pair
 from paper.scenes import BRANCHES, EXTREME, NEAR_RESONANT, PHI_AC, DrivenRun, driven_runs, shown_run
 from paper.thickness_range import amplitudes
+from references import SurfaceEffects
 
 TOLERANCE = 1e-12
 CHECKED_AT = (0.2, 1.0)

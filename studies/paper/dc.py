@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import matplotlib.pyplot as plt
+import numpy as np
+
 import dc_motion
 import figure_style as style
 import figures
-import matplotlib.pyplot as plt
-import numpy as np
 import references
 import turning_points
-from dielectric_actuator import Actuator
 from comparison import Comparison, Row
-
+from dielectric_actuator import Actuator
 from paper.entries import Claim, Entry, long_format
 from paper.equation import time_to
 

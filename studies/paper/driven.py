@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from dielectric_actuator import Actuator
-from comparison import Row
 from scipy.spatial import cKDTree
 
+import figure_style as style
+from comparison import Row
+from dielectric_actuator import Actuator
 from paper.entries import Claim, Entry, Grid, long_format
 from paper.scenes import DETUNING, EXTREME, NEAR_RESONANT, PHI_AC, DrivenRun, shown_run
 from paper.workers import Workers

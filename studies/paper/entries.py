@@ -8,11 +8,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from comparison import Row
 from matplotlib.figure import Figure
+
+import figure_style as style
+from comparison import Row
 
 
 @dataclass(frozen=True)

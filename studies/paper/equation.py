@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from references import PullIn, SurfaceEffects
 from scipy.integrate import quad
 from scipy.optimize import brentq
+
+from references import PullIn, SurfaceEffects
 
 
 @dataclass(frozen=True)

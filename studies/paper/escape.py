@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from dielectric_actuator import Actuator
 from matplotlib.colors import LogNorm
 
+import figure_style as style
+from dielectric_actuator import Actuator
 from paper.entries import Claim, Entry, Grid, stack
 from paper.equation import threshold
 from paper.maps import CMAP, IDEAL, NO_MAP, TOLERANCE

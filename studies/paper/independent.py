@@ -13,12 +13,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import turning_points
-from references import SurfaceEffects
 from scipy.integrate import solve_ivp
 
+import turning_points
 from paper.equation import Cases
 from paper.scenes import C
+from references import SurfaceEffects
 
 RTOL, ATOL = 1e-12, 1e-13
 ODE45_RTOL, ODE45_ATOL = 1e-3, 1e-6

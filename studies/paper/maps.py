@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
+from matplotlib.colors import LogNorm
+
+import figure_style as style
 import references
 import turning_points
-from dielectric_actuator import Actuator
 from comparison import Row
-from matplotlib.colors import LogNorm
-from references import SurfaceEffects
-
+from dielectric_actuator import Actuator
 from paper import equation
 from paper.entries import Claim, Entry, stack
 from paper.workers import Workers
+from references import SurfaceEffects
 
 TOLERANCE = 1e-9
 CMAP = "cividis"

@@ -9,10 +9,10 @@ from html import escape
 from io import BytesIO
 from pathlib import Path
 
-import figure_style as style
-from comparison import Row
 from PIL import Image
 
+import figure_style as style
+from comparison import Row
 from paper.entries import Claim, Entry, Grid
 
 _STYLE = """

@@ -10,12 +10,12 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from dielectric_actuator import Actuator
-from references import SurfaceEffects
 
+from dielectric_actuator import Actuator
 from paper.scenes import BRANCHES, PHI_AC, cases
 from paper.thickness_range import amplitudes
 from paper.workers import Workers
+from references import SurfaceEffects
 
 WINDOWS = (1000.0, 2000.0, 3000.0, 4000.0, 5000.0)
 TOLERANCE = 1e-9

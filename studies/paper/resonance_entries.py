@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-from dielectric_actuator import Actuator
-from comparison import Row
-from references import SurfaceEffects, driven_amplitudes
 
+import figure_style as style
+from comparison import Row
+from dielectric_actuator import Actuator
 from paper.entries import Claim, Entry, Grid, draw_table, stack
 from paper.independent import DrivenRuns
 from paper.resonance import RESOLUTION, Response
 from paper.scenes import BRANCHES, PHI_AC, PRESTRESSES, TABLES, VALUES, printed_resonances, varied
 from paper.thickness_range import amplitudes
+from references import SurfaceEffects, driven_amplitudes
 
 Responses = dict[SurfaceEffects, Response]
 
@@ -240,7 +240,7 @@ def tables(responses: Responses, checked: dict[tuple[SurfaceEffects, str], list[
                 claims=[
                     Claim(
                         f"{title}, to four digits.",
-                        False if marked else True,
+                        not marked,
                         f"{len(marked)} of {len(cells)} entries (marked) are the peak of none of the windows T = "
                         f"{', '.join(f'{w:g}' for w in windows)}, to half a unit of their last digit.",
                     )

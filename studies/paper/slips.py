@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from references import SurfaceEffects, dc_orbits
 from scipy.integrate import quad
 
 from paper.entries import Claim
 from paper.equation import Cases
+from references import SurfaceEffects, dc_orbits
 
 SHEAR_MODULUS = 303e3
 SURFACE = {"γ̄ₛ": 0.02, "τ̄ₛ": 0.02, "Ēₛ": 0.126}

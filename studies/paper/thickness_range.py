@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+
 from dielectric_actuator import Actuator, Scene
 
 
-def ranges(
-    actuator: Actuator, scene: Scene, windows: Sequence[float], tolerance: float
-) -> list[tuple[float, float]]:
+def ranges(actuator: Actuator, scene: Scene, windows: Sequence[float], tolerance: float) -> list[tuple[float, float]]:
     """λ₃ lowest and highest over [0, t] for each t of the growing `windows`; one communication step each."""
     actuator.start({**scene, "record_extremes": True}, tolerance=tolerance)
     found = []

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
-import figure_style as style
 import matplotlib.pyplot as plt
 import numpy as np
-import references
-from dielectric_actuator import Actuator
-from comparison import Row
-from references import SurfaceEffects
 from scipy.optimize import brentq
 
+import figure_style as style
+import references
+from comparison import Row
+from dielectric_actuator import Actuator
 from paper import equation
 from paper.entries import Claim, Entry, draw_table, long_format
 from paper.thickness_range import ranges
+from references import SurfaceEffects
 
 IDEAL = {"gamma_s": 0.0, "tau_s": 0.0, "E_s": 0.0}
 VALUES = {

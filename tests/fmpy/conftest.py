@@ -1,6 +1,5 @@
 """What the FMPy tests share: the packed FMU, and the package's `Actuator` that they drive it with."""
 
-import sys
 from pathlib import Path
 
 import fmpy
@@ -8,9 +7,6 @@ import pytest
 
 from dielectric_actuator import Actuator, packed_fmu
 from dielectric_actuator.fmu import instantiate as load
-
-REPOSITORY = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPOSITORY / "studies"))
 
 
 def pytest_addoption(parser):

@@ -2,9 +2,10 @@
 
 import math
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
+
+import allowed_errors as allowed
 import references
 import turning_points
 
@@ -58,8 +59,7 @@ def test_an_input_that_is_a_function_of_time_approaches_the_drive(actuator):
         return 0.3 * math.sin(0.1471 * time)
 
     errors = [
-        actuator.run({"phi": held_sine}, communication_step=step, **run)["lambda"][-1] - exact
-        for step in (0.02, 0.01)
+        actuator.run({"phi": held_sine}, communication_step=step, **run)["lambda"][-1] - exact for step in (0.02, 0.01)
     ]
     assert abs(errors[1]) < 1e-4
     assert errors[0] / errors[1] == pytest.approx(2, rel=0.05)

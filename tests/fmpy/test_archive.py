@@ -91,8 +91,8 @@ def test_icon_is_a_square_png(archive):
 def test_licence_of_every_linked_crate_is_there(archive):
     """Cargo's own list of what is linked for 64-bit Linux, by another route than the packager's."""
     printed = subprocess.run(
-        ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]
-        + ["--target", "x86_64-unknown-linux-gnu", "--package", "dielectric-elastomer-actuator"],
+        ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}",
+         "--target", "x86_64-unknown-linux-gnu", "--package", "dielectric-elastomer-actuator"],
         cwd=REPOSITORY, capture_output=True, text=True, check=True,
     ).stdout  # fmt: skip
     linked = set(re.findall(r"^(\S+) v(\S+)$", printed, flags=re.MULTILINE))

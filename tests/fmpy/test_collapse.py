@@ -1,8 +1,9 @@
 """Reaching lambda_max or lambda_min: located, reported, and held or ended as the user asked."""
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
+
+import allowed_errors as allowed
 import references
 
 HOLD, TERMINATE = 1, 2

@@ -1,8 +1,9 @@
 """Constant voltage: the motion is periodic, with the period, the turning points and the energy of quadrature."""
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
+
+import allowed_errors as allowed
 import references
 import turning_points
 

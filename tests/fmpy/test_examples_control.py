@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import controllers
+import loop
+from quasi_static import squared_voltages
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLE = REPOSITORY / "examples" / "control"
-sys.path.insert(0, str(EXAMPLE))
-
-import controllers  # noqa: E402
-import loop  # noqa: E402
-from quasi_static import squared_voltages  # noqa: E402
 
 
 def test_the_quasi_static_voltage_holds_the_stretch(actuator):

@@ -15,15 +15,14 @@ import pyarrow.parquet as parquet
 import pytest
 from distributed import Client
 
+import command
+import references
+import scenes
+import sweep as engine
+from sweep_measures import fatal, whose
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLE = REPOSITORY / "examples" / "sweep"
-sys.path.insert(0, str(EXAMPLE))
-
-import command  # noqa: E402
-import references  # noqa: E402
-import scenes  # noqa: E402
-import sweep as engine  # noqa: E402
-from sweep_measures import fatal, whose  # noqa: E402
 
 WORKERS = 2
 
@@ -40,7 +39,16 @@ def cluster(tmp_path_factory):
     with (folder / "log").open("w") as log:
         commands = (
             [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", *one, *where],
-            [sys.executable, "-m", "distributed.cli.dask_worker", "--nworkers", f"{WORKERS}", "--nthreads", "1", *where],
+            [
+                sys.executable,
+                "-m",
+                "distributed.cli.dask_worker",
+                "--nworkers",
+                f"{WORKERS}",
+                "--nthreads",
+                "1",
+                *where,
+            ],
         )
         started = [subprocess.Popen(words, stderr=log, **here) for words in commands]
         try:
@@ -77,8 +85,12 @@ def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
 
 def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
     table = engine.sweep(
-        whose, engine.grid(phi=np.linspace(0, 0.6, 200)), tmp_path / "whose.parquet",
-        cluster=cluster, batch=5, fmu=fmu_path,
+        whose,
+        engine.grid(phi=np.linspace(0, 0.6, 200)),
+        tmp_path / "whose.parquet",
+        cluster=cluster,
+        batch=5,
+        fmu=fmu_path,
     )
     pairs = set(zip(table["process"].to_pylist(), table["actuator"].to_pylist()))
     assert len(table) == 200 and len(pairs) == len({process for process, _ in pairs}) == WORKERS
@@ -87,8 +99,12 @@ def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
 def test_a_failing_scene_is_reported_and_the_rest_kept(cluster, fmu_path, tmp_path, capsys):
     voltages = [0.1, 5000.0, 0.2, 0.9, float("nan")]
     table = engine.sweep(
-        partial(scenes.pull_in, stop_time=200.0), engine.grid(phi=voltages), tmp_path / "some.parquet",
-        cluster=cluster, batch=3, fmu=fmu_path,
+        partial(scenes.pull_in, stop_time=200.0),
+        engine.grid(phi=voltages),
+        tmp_path / "some.parquet",
+        cluster=cluster,
+        batch=3,
+        fmu=fmu_path,
     )
     assert table["pulled_in"].to_pylist() == [False, None, False, True, None]
     failures = table["failure"].to_pylist()
@@ -142,9 +158,9 @@ def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
 def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):
     """A batch that was on a dying worker too often counts as lost with it; all others must be there."""
     output, columns = tmp_path / "lost.parquet", engine.grid(phi=np.arange(0.1, 0.85, 0.1).round(1))
-    with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
-        with pytest.raises(engine.Unfinished) as unfinished:
-            engine.sweep(fatal, columns, output, workers=1, batch=2, fmu=fmu_path)
+    once = dask.config.set({"distributed.scheduler.allowed-failures": 1})
+    with once, pytest.raises(engine.Unfinished) as unfinished:
+        engine.sweep(fatal, columns, output, workers=1, batch=2, fmu=fmu_path)
     lost = {int(first) for first in re.findall(r"scenes (\d+) to", str(unfinished.value))}
     kept = [parquet.read_table(path)["scene"].to_pylist() for path in (tmp_path / "lost.parquet.parts").iterdir()]
     assert 4 in lost and sorted(kept) == [[k, k + 1] for k in (0, 2, 4, 6) if k not in lost] != []

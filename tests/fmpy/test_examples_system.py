@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
 
+import pack
+from dielectric_actuator import Actuator
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 EXAMPLE = REPOSITORY / "examples" / "system"
-sys.path.insert(0, str(EXAMPLE))
-
-import pack  # noqa: E402
-from dielectric_actuator import Actuator  # noqa: E402
 
 
 @pytest.fixture(scope="module")

@@ -82,9 +82,10 @@ def outcomes(fmu_path, tmp_path_factory):
     return [(code, (folder / str(number) / "output").read_text()) for number, code in enumerate(codes)]
 
 
-@pytest.mark.parametrize("number, quoted", [
-    pytest.param(number, program.values[1], id=program.id) for number, program in enumerate(programs())
-])
+@pytest.mark.parametrize(
+    "number, quoted",
+    [pytest.param(number, program.values[1], id=program.id) for number, program in enumerate(programs())],
+)
 def test_program_runs_and_says_what_is_quoted(number, quoted, outcomes):
     code, output = outcomes[number]
     if quoted is None:

@@ -1,10 +1,11 @@
 """Model exchange: SUNDIALS' CVODE, through FMPy, integrates the actuator's equation and locates its collapse; a
 check of the co-simulation by an integrator that shares nothing with it."""
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
+
+import allowed_errors as allowed
 
 REFERENCE_SET = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 SCENES = {

@@ -2,9 +2,10 @@
 
 import math
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
+
+import allowed_errors as allowed
 import references
 import turning_points
 from pull_in_search import pull_in_bracket
@@ -91,9 +92,7 @@ def overshoots_at_the_crossing(actuator, E_s: float, saddle_stretch: float) -> t
     """Thickness stretches where the motion first turns, at two voltages 1e-9 apart between which the
     overshoot passes `saddle_stretch`."""
     turned = []
-    for voltage in pull_in_bracket(
-        actuator, {"E_s": E_s}, saddle_stretch, below=0.5, above=1.0, resolution=1e-9
-    ):
+    for voltage in pull_in_bracket(actuator, {"E_s": E_s}, saddle_stretch, below=0.5, above=1.0, resolution=1e-9):
         response = actuator.run(
             {"E_s": E_s, "phi": voltage},
             stop_time=1000.0,

@@ -1,12 +1,13 @@
 """The FMU as users call it: fmpy.simulate_fmu and FMPy's bare instance API."""
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
-import references
 from fmpy import simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
+
+import allowed_errors as allowed
+import references
 
 REFERENCE_SET = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 

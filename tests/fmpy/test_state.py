@@ -4,10 +4,11 @@ import json
 import subprocess
 import sys
 
-import allowed_errors as allowed
 import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
+
+import allowed_errors as allowed
 
 SCENES = {
     "voltage step": {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2, "phi": 0.6, "S": 0.5},

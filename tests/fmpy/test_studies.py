@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 import turning_points
 from comparison import Comparison, Row
 

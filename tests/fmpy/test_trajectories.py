@@ -1,7 +1,8 @@
 """Trajectories against multiprecision at very different communication steps."""
 
-import allowed_errors as allowed
 import pytest
+
+import allowed_errors as allowed
 import references
 import trajectories
 

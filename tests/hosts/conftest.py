@@ -7,8 +7,6 @@ import pytest
 
 from dielectric_actuator import packed_fmu
 
-REPOSITORY = Path(__file__).resolve().parents[2]
-
 
 @pytest.fixture(scope="session")
 def fmu() -> Path:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+
 import run_in_host
 
 HERE = Path(__file__).parent

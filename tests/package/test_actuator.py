@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+
 from dielectric_actuator import Actuator, FMICallException, UnknownName, frame, packed_fmu
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
@@ -30,12 +31,15 @@ def test_variables_have_units_and_descriptions(actuator):
     assert actuator.variables["phi"].unit == "1" and "voltage" in actuator.variables["phi"].description
 
 
-@pytest.mark.parametrize("call", [
-    lambda actuator: actuator.start({"lamda_start": 1.1}),
-    lambda actuator: actuator.get("lamda_start"),
-    lambda actuator: actuator.run({}, stop_time=1.0, communication_step=1.0, outputs=["lamda_start"]),
-    lambda actuator: actuator.directional_derivatives(["lambda_ddot"], "lamda_start"),
-])
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda actuator: actuator.start({"lamda_start": 1.1}),
+        lambda actuator: actuator.get("lamda_start"),
+        lambda actuator: actuator.run({}, stop_time=1.0, communication_step=1.0, outputs=["lamda_start"]),
+        lambda actuator: actuator.directional_derivatives(["lambda_ddot"], "lamda_start"),
+    ],
+)
 def test_an_unknown_name_gets_a_suggestion(actuator, call):
     actuator.start({})
     with pytest.raises(UnknownName, match="no variable 'lamda_start'; did you mean lambda_start"):
@@ -78,13 +82,16 @@ def test_looking_ahead_leaves_no_trace(actuator):
     assert actuator.get("lambda", "lambda_dot") == before and actuator.time == 5.0
 
 
-@pytest.mark.parametrize("values", [
-    {},
-    {"phi": 0.3, "S": 0.2},
-    SURFACE_EFFECTS,
-    {**SURFACE_EFFECTS, "phi": 0.5},
-    {"gamma_s": 0.3, "tau_s": 0.05},
-])
+@pytest.mark.parametrize(
+    "values",
+    [
+        {},
+        {"phi": 0.3, "S": 0.2},
+        SURFACE_EFFECTS,
+        {**SURFACE_EFFECTS, "phi": 0.5},
+        {"gamma_s": 0.3, "tau_s": 0.05},
+    ],
+)
 def test_a_start_at_equilibrium_does_not_move(actuator, values):
     stretch = actuator.equilibrium(values)
     actuator.start(values, at_equilibrium=True)

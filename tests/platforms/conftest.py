@@ -10,9 +10,10 @@ import zipfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import debian
 import fmpy
 import pytest
+
+import debian
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 MODEL = "DielectricElastomerActuator"

@@ -47,5 +47,5 @@ def test_every_platform_gives_the_same_trajectory(simulate, name, scene):
 @pytest.mark.parametrize("name", OTHERS)
 def test_every_platform_speaks_through_the_logger(simulate, name):
     """A refused value ends the host with the call's name and the unit's message."""
-    with pytest.raises(AssertionError, match="(?s)below its minimum.*fmi2SetReal returned 3"):
+    with pytest.raises(AssertionError, match=r"(?s)below its minimum.*fmi2SetReal returned 3"):
         simulate(name, {"c": -1.0}, OUTPUTS, step=0.1, steps=1, tolerance=TOLERANCE)

@@ -12,6 +12,7 @@ Needs mpmath, which the project itself does not. Takes a few minutes.
 
 import json
 import sys
+from functools import partial
 
 from mpmath import cos, findroot, inf, mp, mpf, nstr, pi, polyval, quad, sin, sqrt
 
@@ -65,7 +66,7 @@ def driven_amplitude(g, tau, E, phi_a, omega, T, order, step):
             right = span * part / EXTREMES_PER_STEP
             rate_right = polyval(falling_rates, right)
             if rate_left * rate_right < 0:
-                turn = findroot(lambda s: polyval(falling_rates, s), (left, right), solver="anderson", tol=1e-40)
+                turn = findroot(partial(polyval, falling_rates), (left, right), solver="anderson", tol=1e-40)
                 reached.append(polyval(falling_stretches, turn))
             left, rate_left = right, rate_right
         stretch, rate, time = polyval(falling_stretches, span), rate_left, time + span
