@@ -118,7 +118,7 @@ def test_equilibria_are_told_apart_up_to_the_static_threshold(actuator):
     below = threshold * (1 - 1e-12)
     # at the fold φ² falls off with the square of the distance
     assert actuator.equilibrium({"phi": below}) == pytest.approx(1 / math.sqrt(thickness), abs=1e-5)
-    with pytest.raises(ValueError, match="the static pull-in voltage is 0.687365"):
+    with pytest.raises(ValueError, match=r"the static pull-in voltage is 0.687365"):
         actuator.equilibrium({"phi": threshold * (1 + 1e-12)})
 
 
