@@ -22,6 +22,8 @@
 pub mod abi;
 pub mod actuator;
 pub mod description;
+pub mod model;
+pub mod nondimensional;
 pub mod pull_in;
 pub mod scene;
 pub mod slave;

@@ -5,18 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::actuator::drive::{Harmonic, Polynomial};
 use crate::actuator::motion::LocalMotion;
 use crate::actuator::{Coefficients, Drive, Motion, Parameters};
+use crate::model::AtLimit;
 use crate::solver::double::Double;
 use crate::solver::limits::Limits;
 use crate::solver::{Equation, State};
-
-/// What the actuator does where the motion reaches a limit of the stretch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum OnPullIn {
-    /// It stays at the limit, and communication steps go on.
-    Hold,
-    /// It asks the host to end the simulation.
-    Terminate,
-}
 
 /// One scenario: actuator, start, limits and drive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,7 +20,7 @@ pub struct Scene {
     /// The stretches between which the motion is followed.
     pub limits: Limits,
     /// What happens at a limit.
-    pub on_pull_in: OnPullIn,
+    pub on_pull_in: AtLimit,
     /// Whether the extremes of the stretch are recorded.
     pub record_extremes: bool,
     /// Voltage and prestress.
@@ -52,7 +44,7 @@ impl Scene {
             lower: 0.0,
             upper: 0.0,
         },
-        on_pull_in: OnPullIn::Hold,
+        on_pull_in: AtLimit::Hold,
         record_extremes: false,
         drive: Drive {
             since: Double::ZERO,

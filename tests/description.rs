@@ -1,7 +1,8 @@
 //! The generated model description.
 
-use dielectric_elastomer_actuator::description::{GUID, xml};
-use dielectric_elastomer_actuator::variables::{VARIABLES, value_reference};
+use dielectric_elastomer_actuator::description;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES, value_reference};
 use fmi::fmi2::schema::Fmi2ModelDescription;
 
 fn checked_in(path: &str) -> String {
@@ -12,7 +13,8 @@ fn checked_in(path: &str) -> String {
 #[test]
 fn the_checked_in_description_is_the_generated_one() {
     assert!(
-        checked_in("modelDescription/modelDescription.xml") == xml(),
+        checked_in("modelDescription/DielectricElastomerActuator.xml")
+            == description::xml::<Nondimensional>(),
         "modelDescription.xml differs from the table; run `cargo fmu describe`"
     );
 }
@@ -20,9 +22,9 @@ fn the_checked_in_description_is_the_generated_one() {
 /// Read back by the reader of the crate `fmi`, which knows nothing of our writer.
 #[test]
 fn an_independent_reader_finds_every_variable() {
-    let text = xml();
+    let text = description::xml::<Nondimensional>();
     let read: Fmi2ModelDescription = fmi::schema::deserialize(&text).expect("a valid description");
-    assert_eq!(read.guid, GUID);
+    assert_eq!(read.guid, Nondimensional::GUID);
     let names: Vec<&str> = read
         .model_variables
         .variables

@@ -8,10 +8,32 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
     ("solver", &[], &["fearless_simd", "nalgebra", "serde"]),
     ("actuator", &["solver"], &["fearless_simd", "serde"]),
     ("pull_in", &["actuator"], &[]),
-    ("scene", &["actuator", "solver"], &["serde"]),
+    ("scene", &["actuator", "model", "solver"], &["serde"]),
+    ("model", &["solver", "variables"], &["serde"]),
+    ("variables", &["actuator", "model", "solver"], &[]),
     (
         "view",
-        &["actuator", "pull_in", "scene", "solver"],
+        &[
+            "actuator",
+            "model",
+            "nondimensional",
+            "pull_in",
+            "scene",
+            "solver",
+        ],
+        &[],
+    ),
+    (
+        "nondimensional",
+        &[
+            "description",
+            "model",
+            "scene",
+            "slave",
+            "solver",
+            "variables",
+            "view",
+        ],
         &["serde"],
     ),
     (
@@ -19,18 +41,21 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
         &["actuator", "scene", "solver"],
         &["fearless_simd"],
     ),
-    ("variables", &["actuator", "scene", "solver", "view"], &[]),
     (
         "slave",
-        &["actuator", "scene", "solver", "variables", "view"],
+        &["actuator", "model", "solver", "variables"],
         &["postcard", "serde"],
     ),
     (
         "description",
-        &["slave", "variables"],
+        &["model", "slave", "variables"],
         &["quick_xml", "serde"],
     ),
-    ("abi", &["description", "slave"], &["crc", "fmi", "libc"]),
+    (
+        "abi",
+        &["description", "model", "nondimensional", "slave"],
+        &["crc", "fmi", "libc"],
+    ),
 ];
 
 /// Longest file that is still read in one go.

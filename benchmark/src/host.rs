@@ -3,8 +3,9 @@
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 
-use dielectric_elastomer_actuator::description::GUID;
-use dielectric_elastomer_actuator::variables::value_reference;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::Nondimensional;
+use dielectric_elastomer_actuator::nondimensional::value_reference;
 use fmi::fmi2::binding::{fmi2CallbackFunctions, fmi2Component, fmi2Status, fmi2Status_fmi2OK};
 
 use crate::case::Case;
@@ -66,7 +67,7 @@ impl Host {
     /// left to the caller.
     pub fn new(case: &Case, tolerance: f64, built_in: bool) -> Host {
         let fmu = case.fmu;
-        let guid = CString::new(GUID).expect("no NUL");
+        let guid = CString::new(Nondimensional::GUID).expect("no NUL");
         let callbacks = Box::new(callbacks());
         let component = fmu.instance(&guid, &callbacks);
         let host = Host {

@@ -13,7 +13,7 @@ use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, State};
 use dielectric_elastomer_actuator::sweep;
-use dielectric_elastomer_actuator::variables::value_reference;
+use dielectric_elastomer_actuator::nondimensional::value_reference;
 
 use crate::case::Case;
 use crate::host::Host;

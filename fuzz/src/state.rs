@@ -11,8 +11,8 @@ mod script;
 
 use std::ptr::null_mut;
 
-use dielectric_elastomer_actuator::abi::*;
-use dielectric_elastomer_actuator::variables::VARIABLES;
+use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::nondimensional::VARIABLES;
 use fmi::fmi2::binding::*;
 use host::{ERROR, Host, OK};
 

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use base64::prelude::{BASE64_STANDARD, Engine};
-use dielectric_elastomer_actuator::variables::{Causality, Kind, VARIABLES, Variability, Variable};
+use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
+use dielectric_elastomer_actuator::variables::{Causality, Kind, Variability, Variable};
 use pulldown_cmark::{
     CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, TextMergeStream, html,
 };
@@ -240,7 +241,7 @@ fn variables() -> String {
     )
 }
 
-fn row(variable: &Variable) -> String {
+fn row(variable: &Variable<Nondimensional>) -> String {
     let kind = match (variable.causality, variable.variability) {
         (Causality::Parameter, Variability::Tunable) => "tunable parameter",
         (Causality::Parameter, _) => "parameter",

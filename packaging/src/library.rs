@@ -23,19 +23,20 @@ use crate::quiet;
 use crate::toolchain::Toolchain;
 use crate::zig::{Stand, Zig, said};
 
-/// Compiles the root package for the platform and returns the path of the static library. What the
-/// compilation needs besides lies in `folder`.
+/// Compiles the member of the workspace whose library is named `identifier` for the platform, and
+/// returns the path of the static library. What the compilation needs besides lies in `folder`.
 ///
 /// # Errors
 /// If cargo cannot be started or fails; its own messages went to standard error.
 pub fn compile(
     project: &Metadata,
+    identifier: &str,
     toolchain: &Toolchain,
     zig: &Zig,
     platform: &Platform,
     folder: &Path,
 ) -> Result<Utf8PathBuf> {
-    let package = root_package(project)?;
+    let package = member(project, identifier)?;
     let stand = zig.stand_in(platform, folder)?;
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&project.workspace_root)
@@ -154,7 +155,20 @@ fn definitions(names: &[&str]) -> String {
     format!("EXPORTS\n{exports}")
 }
 
-/// The package that the FMU is made from, at the root of the workspace.
+/// The member of the workspace whose library has this name.
+fn member<'a>(project: &'a Metadata, identifier: &str) -> Result<&'a Package> {
+    let has_library = |package: &&Package| {
+        let mut targets = package.targets.iter();
+        targets.any(|target| target.name == identifier)
+    };
+    project
+        .packages
+        .iter()
+        .find(has_library)
+        .with_context(|| format!("no member of the workspace has a library {identifier}"))
+}
+
+/// The package at the root of the workspace, of which every FMU is made.
 pub fn root_package(project: &Metadata) -> Result<&Package> {
     project
         .root_package()

@@ -20,7 +20,9 @@ use anyhow::{Context, Result, bail, ensure};
 use cargo_metadata::{Metadata, MetadataCommand};
 use clap::{Parser, Subcommand};
 use dielectric_elastomer_actuator::abi::EXPORTED_NAMES;
-use dielectric_elastomer_actuator::description::{self, MODEL_IDENTIFIER};
+use dielectric_elastomer_actuator::description;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::Nondimensional;
 
 use archive::Entries;
 use inspect::Binary;
@@ -28,8 +30,30 @@ use platform::{PLATFORMS, Platform};
 use toolchain::Toolchain;
 use zig::Zig;
 
-/// The checked-in description, relative to the workspace.
-const DESCRIPTION: &str = "modelDescription/modelDescription.xml";
+/// An FMU that is shipped: a member of the workspace below `fmus`.
+struct Fmu {
+    /// The name of the FMU, of the binary in it and of the member's library.
+    identifier: &'static str,
+    /// Writes its model description.
+    xml: fn() -> String,
+}
+
+impl Fmu {
+    const fn of<M: Model>() -> Fmu {
+        Fmu {
+            identifier: M::IDENTIFIER,
+            xml: description::xml::<M>,
+        }
+    }
+
+    /// The checked-in description, relative to the workspace.
+    fn description(&self) -> String {
+        format!("modelDescription/{}.xml", self.identifier)
+    }
+}
+
+/// Every FMU that is shipped.
+const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>()];
 
 /// Build, check and pack the FMU
 #[derive(Parser)]
@@ -47,7 +71,7 @@ struct Arguments {
 enum Verb {
     /// Pack the FMU into target/fmu
     Pack,
-    /// Write modelDescription/modelDescription.xml
+    /// Write each modelDescription/<FMU>.xml
     Describe {
         /// Write nothing, fail if the checked-in file differs
         #[arg(long)]
@@ -73,29 +97,45 @@ fn main() -> ExitCode {
     }
 }
 
-/// Packs the FMU, of one platform or of every one that can be built for, and prints what was packed.
+/// Packs each FMU, of one platform or of every one that can be built for, and prints what was packed.
 fn pack(all: bool) -> Result<()> {
     let project = project()?;
     // Known to be there before the long compilation.
     let zig = Zig::find()?;
-    let folder = project.workspace_root.join("target/fmu");
     let count = if all { PLATFORMS.len() } else { 1 };
     let (built, missing) = toolchains(&PLATFORMS[..count])?;
-    let mut entries = Entries::new();
-    entries.insert("modelDescription.xml".into(), description::xml().into());
-    entries.insert("model.png".into(), icon::png()?);
-    let guide = guide::html(project.workspace_root.as_std_path())?;
-    entries.insert("documentation/index.html".into(), guide.into());
     let platforms: Vec<&Platform> = built.iter().map(|(platform, _)| *platform).collect();
-    licences::add(&mut entries, &project, &built[0].1, &zig, &platforms)?;
+    let mut shared = Entries::new();
+    shared.insert("model.png".into(), icon::png()?);
+    let guide = guide::html(project.workspace_root.as_std_path())?;
+    shared.insert("documentation/index.html".into(), guide.into());
+    licences::add(&mut shared, &project, &built[0].1, &zig, &platforms)?;
+    for fmu in FMUS {
+        pack_one(fmu, shared.clone(), &project, &zig, &built)?;
+    }
+    print!("{missing}");
+    Ok(())
+}
+
+/// Packs one FMU with what all of them share, and prints what was packed.
+fn pack_one(
+    fmu: &Fmu,
+    mut entries: Entries,
+    project: &Metadata,
+    zig: &Zig,
+    built: &[(&Platform, Toolchain)],
+) -> Result<()> {
+    let folder = project.workspace_root.join("target/fmu");
+    entries.insert("modelDescription.xml".into(), (fmu.xml)().into());
     let mut report = String::new();
-    for (platform, toolchain) in &built {
-        let file = format!("{MODEL_IDENTIFIER}.{}", platform.extension);
+    for (platform, toolchain) in built {
+        let file = format!("{}.{}", fmu.identifier, platform.extension);
         let place = folder.join(platform.folder);
         let bytes = build(
-            &project,
+            fmu,
+            project,
             toolchain,
-            &zig,
+            zig,
             platform,
             place.as_std_path(),
             &file,
@@ -103,11 +143,11 @@ fn pack(all: bool) -> Result<()> {
         report += &check(&bytes, platform).with_context(|| format!("{place}/{file} is refused"))?;
         entries.insert(format!("binaries/{}/{file}", platform.folder), bytes);
     }
-    let path = folder.join(format!("{MODEL_IDENTIFIER}.fmu"));
+    let path = folder.join(format!("{}.fmu", fmu.identifier));
     archive::write(path.as_std_path(), &entries)?;
     let size = fs::metadata(&path).map_or(0, |metadata| metadata.len());
     println!("{path}: {}, {} files", kibibytes(size), entries.len());
-    print!("{report}{missing}");
+    print!("{report}");
     Ok(())
 }
 
@@ -128,8 +168,9 @@ fn toolchains(platforms: &[Platform]) -> Result<(Vec<(&Platform, Toolchain)>, St
     Ok((built, missing))
 }
 
-/// Builds the shared library `file` of a platform in `folder` and returns its bytes.
+/// Builds the shared library `file` of an FMU for a platform in `folder` and returns its bytes.
 fn build(
+    fmu: &Fmu,
     project: &Metadata,
     toolchain: &Toolchain,
     zig: &Zig,
@@ -139,7 +180,14 @@ fn build(
 ) -> Result<Vec<u8>> {
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let shared = folder.join(file);
-    let archive = library::compile(project, toolchain, zig, platform, &folder.join("zig"))?;
+    let archive = library::compile(
+        project,
+        fmu.identifier,
+        toolchain,
+        zig,
+        platform,
+        &folder.join("zig"),
+    )?;
     library::link(
         zig,
         archive.as_std_path(),
@@ -179,26 +227,29 @@ fn check(bytes: &[u8], platform: &Platform) -> Result<String> {
     ))
 }
 
-/// Writes the description to its place in the workspace, or compares the two.
+/// Writes each description to its place in the workspace, or compares the two.
 fn describe(check: bool) -> Result<()> {
-    let path = project()?.workspace_root.join(DESCRIPTION);
-    let text = description::xml();
-    if !check {
-        if let Some(folder) = path.parent() {
-            fs::create_dir_all(folder).with_context(|| format!("cannot make {folder}"))?;
+    let root = project()?.workspace_root;
+    for fmu in FMUS {
+        let path = root.join(fmu.description());
+        let text = (fmu.xml)();
+        if !check {
+            if let Some(folder) = path.parent() {
+                fs::create_dir_all(folder).with_context(|| format!("cannot make {folder}"))?;
+            }
+            fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
+            println!("{path} is written");
+            continue;
         }
-        fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
-        println!("{path} is written");
-        return Ok(());
+        let present = fs::read_to_string(&path)
+            .with_context(|| format!("cannot read {path}; run `cargo fmu describe`"))?;
+        if let Some(line) = first_difference(&present, &text) {
+            bail!(
+                "{path} differs from the variable table, first in line {line}; run `cargo fmu describe`"
+            );
+        }
+        println!("{path} is up to date");
     }
-    let present = fs::read_to_string(&path)
-        .with_context(|| format!("cannot read {path}; run `cargo fmu describe`"))?;
-    if let Some(line) = first_difference(&present, &text) {
-        bail!(
-            "{path} differs from the variable table, first in line {line}; run `cargo fmu describe`"
-        );
-    }
-    println!("{path} is up to date");
     Ok(())
 }
 

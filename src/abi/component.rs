@@ -10,6 +10,7 @@ use fmi::fmi2::binding::{
 };
 
 use crate::description::LOG_CATEGORIES;
+use crate::model::Model;
 use crate::slave::{Call, Event, Fault, Instance, Severity};
 
 /// Log categories by their place in [`LOG_CATEGORIES`].
@@ -18,8 +19,8 @@ const WARNINGS: usize = 1;
 const ERRORS: usize = 2;
 
 /// An instance with its host.
-pub struct Component {
-    pub instance: Instance,
+pub struct Component<M: Model> {
+    pub instance: Instance<M>,
     pub host: Host,
 }
 
@@ -134,7 +135,10 @@ fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
 
 /// The component of an instance that `make` makes, or null: the one way into an
 /// instance's life. No panic leaves it.
-pub fn instantiated(host: Host, make: impl FnOnce() -> Result<Instance, Fault>) -> fmi2Component {
+pub fn instantiated<M: Model>(
+    host: Host,
+    make: impl FnOnce() -> Result<Instance<M>, Fault>,
+) -> fmi2Component {
     match contained(make) {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
         Err(fault) => {
@@ -155,16 +159,16 @@ pub fn free<T>(owned: Box<T>) {
 
 /// Runs `body` on the component behind the pointer, if the phase permits the
 /// call: the one way from C into the slave. No panic leaves it.
-pub fn guarded(
+pub fn guarded<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
-    body: impl FnOnce(&mut Component) -> Result<Option<Event>, Fault>,
+    body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
 ) -> fmi2Status {
     // SAFETY: a component that is not null comes from `fmi2Instantiate`, was
     // not freed, and is used by one call at a time: the host owes it to us
     // (FMI 2.0, sections 2.1.6 and 2.1.7).
-    let Some(component) = (unsafe { component.cast::<Component>().as_mut() }) else {
+    let Some(component) = (unsafe { component.cast::<Component<M>>().as_mut() }) else {
         return fmi2Status_fmi2Error;
     };
     if let Err(fault) = component.instance.check(call) {
@@ -186,6 +190,7 @@ pub fn guarded(
 mod tests {
     use super::*;
     use crate::abi::*;
+    use crate::nondimensional::Nondimensional;
     use crate::slave::Interface;
 
     fn host() -> Host {
@@ -203,8 +208,10 @@ mod tests {
     /// the instance can still be freed.
     #[test]
     fn a_panic_does_not_leave_the_library() {
-        let component = instantiated(host(), || Ok(Instance::of(Interface::CoSimulation)));
-        let status = guarded(
+        let component = instantiated(host(), || {
+            Ok(Instance::<Nondimensional>::of(Interface::CoSimulation))
+        });
+        let status = guarded::<Nondimensional>(
             component,
             "fmi2SetupExperiment",
             Call::SetupExperiment,
@@ -215,17 +222,17 @@ mod tests {
         // SAFETY: a live component, and arrays as long as they are said to be.
         unsafe {
             for status in [
-                fmi2GetReal(component, &0, 1, &mut 0.0),
-                fmi2SetReal(component, &0, 1, &0.1),
-                fmi2EnterInitializationMode(component),
-                fmi2DoStep(component, 0.0, 0.1, 1),
-                fmi2GetFMUstate(component, &mut state),
-                fmi2Terminate(component),
-                fmi2Reset(component),
+                fmi2GetReal::<Nondimensional>(component, &0, 1, &mut 0.0),
+                fmi2SetReal::<Nondimensional>(component, &0, 1, &0.1),
+                fmi2EnterInitializationMode::<Nondimensional>(component),
+                fmi2DoStep::<Nondimensional>(component, 0.0, 0.1, 1),
+                fmi2GetFMUstate::<Nondimensional>(component, &mut state),
+                fmi2Terminate::<Nondimensional>(component),
+                fmi2Reset::<Nondimensional>(component),
             ] {
                 assert_eq!(status, fmi2Status_fmi2Fatal);
             }
-            fmi2FreeInstance(component);
+            fmi2FreeInstance::<Nondimensional>(component);
         }
         assert!(state.is_null());
     }
@@ -233,7 +240,8 @@ mod tests {
     /// What panics while it is made is a fatal fault, and no component.
     #[test]
     fn a_panic_in_making_an_instance_leaves_none() {
-        let panics = || -> Result<Instance, Fault> { panic!("what the test asks for") };
+        let panics =
+            || -> Result<Instance<Nondimensional>, Fault> { panic!("what the test asks for") };
         let fault = contained(panics).expect_err("a panic");
         assert_eq!(fault.severity, Severity::Fatal);
         assert!(fault.text.contains("internal error"), "{}", fault.text);

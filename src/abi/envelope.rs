@@ -7,7 +7,7 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
-use crate::description::GUID;
+use crate::model::Model;
 use crate::slave::{Fault, STATE_LAYOUT};
 
 const MAGIC: &[u8] = b"DEA state";
@@ -15,17 +15,17 @@ static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 const LAYOUT: [u8; 2] = STATE_LAYOUT.to_le_bytes();
 
 /// Size of the envelope with these contents.
-pub fn size(contents: &[u8]) -> usize {
-    header(contents).len() + contents.len()
+pub fn size<M: Model>(contents: &[u8]) -> usize {
+    header::<M>(contents).len() + contents.len()
 }
 
-fn header(contents: &[u8]) -> Vec<u8> {
+fn header<M: Model>(contents: &[u8]) -> Vec<u8> {
     let length = contents.len() as u32;
     let checksum = CHECKSUM.checksum(contents);
     [
         MAGIC,
         &LAYOUT,
-        GUID.as_bytes(),
+        M::GUID.as_bytes(),
         &length.to_le_bytes(),
         &checksum.to_le_bytes(),
     ]
@@ -36,8 +36,8 @@ fn header(contents: &[u8]) -> Vec<u8> {
 ///
 /// # Errors
 /// Error for a target of another size; then nothing is written.
-pub fn seal(contents: &[u8], target: &mut [u8]) -> Result<(), Fault> {
-    let header = header(contents);
+pub fn seal<M: Model>(contents: &[u8], target: &mut [u8]) -> Result<(), Fault> {
+    let header = header::<M>(contents);
     if target.len() != header.len() + contents.len() {
         return Err(Fault::error(format!(
             "room for {} bytes was given; fmi2SerializedFMUstateSize says {}",
@@ -56,14 +56,14 @@ pub fn seal(contents: &[u8], target: &mut [u8]) -> Result<(), Fault> {
 /// # Errors
 /// Error for bytes that are no serialized state, of another version of this FMU
 /// or damaged.
-pub fn open(sealed: &[u8]) -> Result<&[u8], Fault> {
+pub fn open<M: Model>(sealed: &[u8]) -> Result<&[u8], Fault> {
     let fault = |why: &str| Fault::error(format!("the bytes are no state of this FMU: {why}"));
     let rest = sealed
         .strip_prefix(MAGIC)
         .ok_or_else(|| fault("they do not begin like one"))?;
     let rest = rest
         .strip_prefix(&LAYOUT)
-        .and_then(|rest| rest.strip_prefix(GUID.as_bytes()))
+        .and_then(|rest| rest.strip_prefix(M::GUID.as_bytes()))
         .ok_or_else(|| fault("they are of another version of it"))?;
     let (sizes, contents) = rest
         .split_at_checked(8)

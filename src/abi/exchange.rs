@@ -4,22 +4,21 @@ use fmi::fmi2::binding::*;
 
 use super::component::guarded;
 use super::pointers::{place, slice, slice_mut};
+use crate::model::Model;
 use crate::slave::Call;
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterEventMode(c: fmi2Component) -> fmi2Status {
-    guarded(c, "fmi2EnterEventMode", Call::EnterEventMode, |component| {
+pub unsafe extern "C" fn fmi2EnterEventMode<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(c, "fmi2EnterEventMode", Call::EnterEventMode, |component| {
         component.instance.enter_event_mode();
         Ok(None)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2NewDiscreteStates(
+pub unsafe extern "C" fn fmi2NewDiscreteStates<M: Model>(
     c: fmi2Component,
     fmi2eventInfo: *mut fmi2EventInfo,
 ) -> fmi2Status {
-    guarded(c, "fmi2NewDiscreteStates", Call::HandleEvent, |component| {
+    guarded::<M>(c, "fmi2NewDiscreteStates", Call::HandleEvent, |component| {
         // SAFETY: see the head of this room.
         let info = unsafe { place(fmi2eventInfo, "fmi2eventInfo") }?;
         let update = component.instance.new_discrete_states()?;
@@ -35,9 +34,8 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2Status {
-    guarded(
+pub unsafe extern "C" fn fmi2EnterContinuousTimeMode<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(
         c,
         "fmi2EnterContinuousTimeMode",
         Call::HandleEvent,
@@ -48,14 +46,13 @@ pub unsafe extern "C" fn fmi2EnterContinuousTimeMode(c: fmi2Component) -> fmi2St
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
+pub unsafe extern "C" fn fmi2CompletedIntegratorStep<M: Model>(
     c: fmi2Component,
     _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
     enterEventMode: *mut fmi2Boolean,
     terminateSimulation: *mut fmi2Boolean,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2CompletedIntegratorStep",
         Call::Integrate,
@@ -71,21 +68,19 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep(
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetTime(c: fmi2Component, time: fmi2Real) -> fmi2Status {
-    guarded(c, "fmi2SetTime", Call::SetTime, |component| {
+pub unsafe extern "C" fn fmi2SetTime<M: Model>(c: fmi2Component, time: fmi2Real) -> fmi2Status {
+    guarded::<M>(c, "fmi2SetTime", Call::SetTime, |component| {
         component.instance.set_time(time)?;
         Ok(None)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetContinuousStates(
+pub unsafe extern "C" fn fmi2SetContinuousStates<M: Model>(
     c: fmi2Component,
     x: *const fmi2Real,
     nx: usize,
 ) -> fmi2Status {
-    guarded(c, "fmi2SetContinuousStates", Call::Integrate, |component| {
+    guarded::<M>(c, "fmi2SetContinuousStates", Call::Integrate, |component| {
         // SAFETY: see the head of this room.
         let states = unsafe { slice(x, nx, "x") }?;
         component.instance.set_continuous_states(states)?;
@@ -96,13 +91,12 @@ pub unsafe extern "C" fn fmi2SetContinuousStates(
 /// Functions that fill an array of the host by a method of the slave.
 macro_rules! fill {
     ($($function:ident($array:ident, $count:ident) by $method:ident as $call:ident;)*) => {$(
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+                pub unsafe extern "C" fn $function<M: Model>(
             c: fmi2Component,
             $array: *mut fmi2Real,
             $count: usize,
         ) -> fmi2Status {
-            guarded(c, stringify!($function), Call::$call, |component| {
+            guarded::<M>(c, stringify!($function), Call::$call, |component| {
                 // SAFETY: see the head of this room.
                 let values = unsafe { slice_mut($array, $count, stringify!($array)) }?;
                 component.instance.$method(values)?;

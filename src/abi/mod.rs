@@ -18,9 +18,9 @@
 #![expect(non_snake_case, reason = "names of the standard")]
 
 mod component;
-mod conformance;
 mod envelope;
 mod exchange;
+mod export;
 mod pointers;
 mod state;
 mod stepping;
@@ -30,35 +30,38 @@ use std::ffi::CStr;
 use fmi::fmi2::binding::*;
 use libc::c_char;
 
-use crate::description::GUID;
+use crate::model::Model;
 use crate::slave::{Call, Fault, Instance, Interface, Type};
 use component::{Component, Host, free, guarded, instantiated};
-pub use conformance::EXPORTED_NAMES;
 pub use exchange::*;
+pub use export::EXPORTED_NAMES;
 use pointers::{slice, slice_mut, text};
 pub use state::*;
 pub use stepping::*;
 
+/// The C types of the standard, for the crates that export its functions.
+pub mod c {
+    pub use fmi::fmi2::binding::*;
+    pub use libc::c_char;
+}
+
 // ---- Inquire version, create and destroy ----
 
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+pub unsafe extern "C" fn fmi2GetTypesPlatform<M: Model>() -> *const c_char {
     c"default".as_ptr()
 }
 
-#[unsafe(no_mangle)]
-pub extern "C" fn fmi2GetVersion() -> *const c_char {
+pub unsafe extern "C" fn fmi2GetVersion<M: Model>() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetDebugLogging(
+pub unsafe extern "C" fn fmi2SetDebugLogging<M: Model>(
     c: fmi2Component,
     loggingOn: fmi2Boolean,
     nCategories: usize,
     categories: *const fmi2String,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2SetDebugLogging",
         Call::SetDebugLogging,
@@ -76,8 +79,7 @@ pub unsafe extern "C" fn fmi2SetDebugLogging(
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Instantiate(
+pub unsafe extern "C" fn fmi2Instantiate<M: Model>(
     instanceName: fmi2String,
     fmuType: fmi2Type,
     fmuGUID: fmi2String,
@@ -108,27 +110,26 @@ pub unsafe extern "C" fn fmi2Instantiate(
         };
         // SAFETY: see the head of this file.
         let guid = unsafe { text(fmuGUID, "the GUID") }?;
-        if guid.to_bytes() != GUID.as_bytes() {
+        if guid.to_bytes() != M::GUID.as_bytes() {
             return Err(Fault::error(format!(
-                "the GUID is not {GUID}: binary and modelDescription.xml do not belong together"
+                "the GUID is not {}: binary and modelDescription.xml do not belong together",
+                M::GUID
             )));
         }
-        Ok(Instance::of(interface))
+        Ok(Instance::<M>::of(interface))
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
+pub unsafe extern "C" fn fmi2FreeInstance<M: Model>(c: fmi2Component) {
     if !c.is_null() {
         // SAFETY: made by `fmi2Instantiate`, and freed once (see the head).
-        free(unsafe { Box::from_raw(c.cast::<Component>()) });
+        free(unsafe { Box::from_raw(c.cast::<Component<M>>()) });
     }
 }
 
 // ---- Enter and exit initialization, terminate, reset ----
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetupExperiment(
+pub unsafe extern "C" fn fmi2SetupExperiment<M: Model>(
     c: fmi2Component,
     toleranceDefined: fmi2Boolean,
     tolerance: fmi2Real,
@@ -136,7 +137,7 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     stopTimeDefined: fmi2Boolean,
     stopTime: fmi2Real,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2SetupExperiment",
         Call::SetupExperiment,
@@ -150,9 +151,8 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2Status {
-    guarded(
+pub unsafe extern "C" fn fmi2EnterInitializationMode<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(
         c,
         "fmi2EnterInitializationMode",
         Call::EnterInitialization,
@@ -163,9 +163,8 @@ pub unsafe extern "C" fn fmi2EnterInitializationMode(c: fmi2Component) -> fmi2St
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Status {
-    guarded(
+pub unsafe extern "C" fn fmi2ExitInitializationMode<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(
         c,
         "fmi2ExitInitializationMode",
         Call::ExitInitialization,
@@ -176,17 +175,15 @@ pub unsafe extern "C" fn fmi2ExitInitializationMode(c: fmi2Component) -> fmi2Sta
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(c: fmi2Component) -> fmi2Status {
-    guarded(c, "fmi2Terminate", Call::Terminate, |component| {
+pub unsafe extern "C" fn fmi2Terminate<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(c, "fmi2Terminate", Call::Terminate, |component| {
         component.instance.terminate();
         Ok(None)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
-    guarded(c, "fmi2Reset", Call::Reset, |component| {
+pub unsafe extern "C" fn fmi2Reset<M: Model>(c: fmi2Component) -> fmi2Status {
+    guarded::<M>(c, "fmi2Reset", Call::Reset, |component| {
         component.instance.reset();
         Ok(None)
     })
@@ -197,14 +194,13 @@ pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
 /// The getter of one type; `$convert` makes its values of ours.
 macro_rules! getter {
     ($function:ident, $value:ty, $type:expr, $convert:expr) => {
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+        pub unsafe extern "C" fn $function<M: Model>(
             c: fmi2Component,
             vr: *const fmi2ValueReference,
             nvr: usize,
             value: *mut $value,
         ) -> fmi2Status {
-            guarded(c, stringify!($function), Call::Get, |component| {
+            guarded::<M>(c, stringify!($function), Call::Get, |component| {
                 // SAFETY: see the head of this file.
                 let references = unsafe { slice(vr, nvr, "vr") }?;
                 // SAFETY: see the head of this file.
@@ -222,14 +218,13 @@ macro_rules! getter {
 /// The setter of one type; `$convert` makes our values of its.
 macro_rules! setter {
     ($function:ident, $value:ty, $type:expr, $convert:expr) => {
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+        pub unsafe extern "C" fn $function<M: Model>(
             c: fmi2Component,
             vr: *const fmi2ValueReference,
             nvr: usize,
             value: *const $value,
         ) -> fmi2Status {
-            guarded(c, stringify!($function), Call::Set, |component| {
+            guarded::<M>(c, stringify!($function), Call::Set, |component| {
                 // SAFETY: see the head of this file.
                 let references = unsafe { slice(vr, nvr, "vr") }?;
                 // SAFETY: see the head of this file.
@@ -258,8 +253,7 @@ setter!(fmi2SetString, fmi2String, Type::String, |_| 0.0);
 
 // ---- Directional derivatives ----
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative<M: Model>(
     c: fmi2Component,
     vUnknown_ref: *const fmi2ValueReference,
     nUnknown: usize,
@@ -268,7 +262,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     dvKnown: *const fmi2Real,
     dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2GetDirectionalDerivative",
         Call::DirectionalDerivative,

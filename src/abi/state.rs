@@ -5,6 +5,7 @@ use fmi::fmi2::binding::*;
 use super::component::{Component, guarded};
 use super::envelope;
 use super::pointers::{place, slice, slice_mut};
+use crate::model::Model;
 use crate::slave::{Call, Fault};
 
 /// What stands behind an `fmi2FMUstate`: a saved instance.
@@ -32,12 +33,11 @@ fn hand_out(state: &mut fmi2FMUstate, bytes: Vec<u8>) {
     }
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(
+pub unsafe extern "C" fn fmi2GetFMUstate<M: Model>(
     c: fmi2Component,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    guarded(c, "fmi2GetFMUstate", Call::State, |component| {
+    guarded::<M>(c, "fmi2GetFMUstate", Call::State, |component| {
         // SAFETY: see the head of this room.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         // SAFETY: null, or a state that we gave (see `saved`).
@@ -48,9 +48,11 @@ pub unsafe extern "C" fn fmi2GetFMUstate(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
-    guarded(c, "fmi2SetFMUstate", Call::State, |component| {
+pub unsafe extern "C" fn fmi2SetFMUstate<M: Model>(
+    c: fmi2Component,
+    FMUstate: fmi2FMUstate,
+) -> fmi2Status {
+    guarded::<M>(c, "fmi2SetFMUstate", Call::State, |component| {
         // SAFETY: see `saved`.
         let state = unsafe { saved(FMUstate) }?;
         component.instance.restore(&state.bytes)?;
@@ -58,12 +60,11 @@ pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstat
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(
+pub unsafe extern "C" fn fmi2FreeFMUstate<M: Model>(
     c: fmi2Component,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    guarded(c, "fmi2FreeFMUstate", Call::FreeState, |_| {
+    guarded::<M>(c, "fmi2FreeFMUstate", Call::FreeState, |_| {
         // SAFETY: see the head of this room.
         if let Ok(state) = unsafe { place(FMUstate, "FMUstate") }
             && !state.is_null()
@@ -76,54 +77,51 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize<M: Model>(
     c: fmi2Component,
     FMUstate: fmi2FMUstate,
     size: *mut usize,
 ) -> fmi2Status {
-    guarded(c, "fmi2SerializedFMUstateSize", Call::State, |_| {
+    guarded::<M>(c, "fmi2SerializedFMUstateSize", Call::State, |_| {
         // SAFETY: see `saved`.
         let state = unsafe { saved(FMUstate) }?;
         // SAFETY: see the head of this room.
-        *unsafe { place(size, "size") }? = envelope::size(&state.bytes);
+        *unsafe { place(size, "size") }? = envelope::size::<M>(&state.bytes);
         Ok(None)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(
+pub unsafe extern "C" fn fmi2SerializeFMUstate<M: Model>(
     c: fmi2Component,
     FMUstate: fmi2FMUstate,
     serializedState: *mut fmi2Byte,
     size: usize,
 ) -> fmi2Status {
-    guarded(c, "fmi2SerializeFMUstate", Call::State, |_| {
+    guarded::<M>(c, "fmi2SerializeFMUstate", Call::State, |_| {
         // SAFETY: see `saved`.
         let state = unsafe { saved(FMUstate) }?;
         // SAFETY: see the head of this room; any byte is as good as another.
         let target = unsafe { slice_mut(serializedState.cast::<u8>(), size, "serializedState") }?;
-        envelope::seal(&state.bytes, target)?;
+        envelope::seal::<M>(&state.bytes, target)?;
         Ok(None)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate<M: Model>(
     c: fmi2Component,
     serializedState: *const fmi2Byte,
     size: usize,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    let body = |component: &mut Component| {
+    let body = |component: &mut Component<M>| {
         // SAFETY: see the head of this room; any byte is as good as another.
         let sealed = unsafe { slice(serializedState.cast::<u8>(), size, "serializedState") }?;
         // SAFETY: see the head of this room.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
-        let bytes = envelope::open(sealed)?;
+        let bytes = envelope::open::<M>(sealed)?;
         component.instance.saved(bytes)?;
         hand_out(state, bytes.to_vec());
         Ok(None)
     };
-    guarded(c, "fmi2DeSerializeFMUstate", Call::State, body)
+    guarded::<M>(c, "fmi2DeSerializeFMUstate", Call::State, body)
 }

@@ -4,17 +4,17 @@ use fmi::fmi2::binding::*;
 
 use super::component::guarded;
 use super::pointers::{place, slice, slice_mut};
+use crate::model::Model;
 use crate::slave::{Call, Fault};
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives<M: Model>(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
     nvr: usize,
     order: *const fmi2Integer,
     value: *const fmi2Real,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2SetRealInputDerivatives",
         Call::SetInputDerivatives,
@@ -33,15 +33,14 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives<M: Model>(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
     nvr: usize,
     order: *const fmi2Integer,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    guarded(
+    guarded::<M>(
         c,
         "fmi2GetRealOutputDerivatives",
         Call::GetOutputDerivatives,
@@ -60,33 +59,30 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     )
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DoStep(
+pub unsafe extern "C" fn fmi2DoStep<M: Model>(
     c: fmi2Component,
     currentCommunicationPoint: fmi2Real,
     communicationStepSize: fmi2Real,
     _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
 ) -> fmi2Status {
-    guarded(c, "fmi2DoStep", Call::DoStep, |component| {
+    guarded::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
         component
             .instance
             .do_step(currentCommunicationPoint, communicationStepSize)
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CancelStep(c: fmi2Component) -> fmi2Status {
+pub unsafe extern "C" fn fmi2CancelStep<M: Model>(c: fmi2Component) -> fmi2Status {
     // No phase permits it, since no step is ever in progress.
-    guarded(c, "fmi2CancelStep", Call::CancelStep, |_| Ok(None))
+    guarded::<M>(c, "fmi2CancelStep", Call::CancelStep, |_| Ok(None))
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetStatus(
+pub unsafe extern "C" fn fmi2GetStatus<M: Model>(
     c: fmi2Component,
     s: fmi2StatusKind,
     value: *mut fmi2Status,
 ) -> fmi2Status {
-    guarded(c, "fmi2GetStatus", Call::GetStatus, |component| {
+    guarded::<M>(c, "fmi2GetStatus", Call::GetStatus, |component| {
         // SAFETY: see the head of this room.
         let value = unsafe { place(value, "value") }?;
         if s != fmi2StatusKind_fmi2DoStepStatus {
@@ -101,13 +97,12 @@ pub unsafe extern "C" fn fmi2GetStatus(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealStatus(
+pub unsafe extern "C" fn fmi2GetRealStatus<M: Model>(
     c: fmi2Component,
     s: fmi2StatusKind,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    guarded(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
+    guarded::<M>(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
         // SAFETY: see the head of this room.
         let value = unsafe { place(value, "value") }?;
         if s != fmi2StatusKind_fmi2LastSuccessfulTime {
@@ -118,13 +113,12 @@ pub unsafe extern "C" fn fmi2GetRealStatus(
     })
 }
 
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBooleanStatus(
+pub unsafe extern "C" fn fmi2GetBooleanStatus<M: Model>(
     c: fmi2Component,
     s: fmi2StatusKind,
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
-    guarded(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
+    guarded::<M>(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
         // SAFETY: see the head of this room.
         let value = unsafe { place(value, "value") }?;
         if s != fmi2StatusKind_fmi2Terminated {
@@ -138,13 +132,12 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(
 /// Statuses of a type in which there is nothing to tell.
 macro_rules! no_status {
     ($($function:ident: $value:ty;)*) => {$(
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $function(
+                pub unsafe extern "C" fn $function<M: Model>(
             c: fmi2Component,
             _s: fmi2StatusKind,
             value: *mut $value,
         ) -> fmi2Status {
-            guarded(c, stringify!($function), Call::GetStatus, |_| {
+            guarded::<M>(c, stringify!($function), Call::GetStatus, |_| {
                 // SAFETY: see the head of this room.
                 unsafe { place(value, "value") }?;
                 Err(no_such_status())

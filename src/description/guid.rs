@@ -1,19 +1,30 @@
 //! The GUID: a hash, by the compiler, of what the description says.
 
-use super::{LOG_CATEGORIES, MODEL_IDENTIFIER};
-use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variable};
-
-/// The GUID that ties the binary to its description. It follows from the table
-/// of variables, the log categories and the version: a changed table cannot
-/// keep it, and the same table gives the same one on each build.
-pub const GUID: &str = match std::str::from_utf8(&TEXT) {
-    Ok(text) => text,
-    Err(_) => panic!("a GUID is ASCII"),
-};
+use super::LOG_CATEGORIES;
+use crate::model::Model;
+use crate::variables::{Access, Kind, Variable};
 
 /// `{8-4-4-4-12}` hexadecimal digits.
-const TEXT: [u8; 38] = {
-    let hash = table();
+pub type Text = [u8; 38];
+
+/// The GUID as a text.
+///
+/// # Panics
+/// If it is not ASCII; at compile time.
+#[must_use]
+pub const fn text(digits: &Text) -> &str {
+    match std::str::from_utf8(digits) {
+        Ok(text) => text,
+        Err(_) => panic!("a GUID is ASCII"),
+    }
+}
+
+/// The GUID that ties the binary of a model to its description. It follows from the table
+/// of variables, the log categories and the version: a changed table cannot
+/// keep it, and the same table gives the same one on each build.
+#[must_use]
+pub const fn of<M: Model>() -> Text {
+    let hash = table::<M>();
     let mut text = *b"{00000000-0000-0000-0000-000000000000}";
     let (mut place, mut digit) = (1, 0);
     while digit < 32 {
@@ -25,25 +36,20 @@ const TEXT: [u8; 38] = {
         digit += 1;
     }
     text
-};
+}
 
-const fn table() -> u128 {
+const fn table<M: Model>() -> u128 {
     let mut hash = Hash::new()
-        .text(MODEL_IDENTIFIER)
+        .text(M::IDENTIFIER)
         .text(env!("CARGO_PKG_VERSION"));
     let mut i = 0;
-    while i < VARIABLES.len() {
-        hash = hash.variable(&VARIABLES[i]);
+    while i < M::VARIABLES.len() {
+        hash = hash.variable(&M::VARIABLES[i]);
         i += 1;
     }
     let mut i = 0;
     while i < LOG_CATEGORIES.len() {
         hash = hash.text(LOG_CATEGORIES[i].0).text(LOG_CATEGORIES[i].1);
-        i += 1;
-    }
-    let mut i = 0;
-    while i < ON_PULL_IN.len() {
-        hash = hash.text(ON_PULL_IN[i].0).text(ON_PULL_IN[i].1);
         i += 1;
     }
     hash.0
@@ -82,13 +88,13 @@ impl Hash {
         }
     }
 
-    const fn variable(self, variable: &Variable) -> Hash {
+    const fn variable<M: Model>(self, variable: &Variable<M>) -> Hash {
         let hash = self
             .text(variable.name)
             .text(variable.description)
             .byte(variable.causality as u8)
             .byte(variable.variability as u8)
-            .byte(variable.unit as u8)
+            .text(variable.unit.name)
             .number(variable.start);
         let hash = match variable.kind {
             Kind::Real { min, max, nominal } => hash
@@ -97,7 +103,16 @@ impl Hash {
                 .number(Some(max))
                 .number(Some(nominal)),
             Kind::Boolean => hash.byte(2),
-            Kind::Enumeration => hash.byte(3),
+            Kind::Enumeration(enumeration) => {
+                let mut hash = hash.byte(3).text(enumeration.name);
+                let mut i = 0;
+                while i < enumeration.items.len() {
+                    let (name, meaning) = enumeration.items[i];
+                    hash = hash.text(name).text(meaning);
+                    i += 1;
+                }
+                hash
+            }
         };
         let hash = match variable.derivative_of {
             Some(state) => hash.byte(1).text(state),

@@ -1,9 +1,7 @@
 //! `modelDescription.xml`, made from the table of variables.
 
-mod guid;
+pub mod guid;
 mod schema;
-
-pub use guid::GUID;
 
 use schema::{
     BaseUnit, Boolean, Category, CoSimulation, DefaultExperiment, DisplayUnit, Enumeration,
@@ -12,14 +10,11 @@ use schema::{
 };
 use serde::Serialize;
 
-use crate::slave::{DEFAULT_TOLERANCE, INDICATOR_COUNT};
+use crate::model::Model;
+use crate::slave::DEFAULT_TOLERANCE;
 use crate::variables::{
-    Access, Causality, DERIVATIVES, Dependencies, Kind, ON_PULL_IN, STATES, Unit, VARIABLES,
-    Variability, Variable, value_reference,
+    self, Access, Causality, Dependencies, Kind, Unit, Variability, Variable, value_reference,
 };
-
-/// The model identifier: name of the FMU and of the binary in it.
-pub const MODEL_IDENTIFIER: &str = "DielectricElastomerActuator";
 
 /// Log categories with their meaning.
 pub const LOG_CATEGORIES: [(&str, &str); 3] = [
@@ -32,40 +27,33 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
 /// each output reads as many as the declared order, so that it reads too far.
 const OUTPUT_DERIVATIVE_ORDER: u32 = 1;
 
-const TYPE_NAME: &str = "OnPullIn";
-const NUMBER: &str = "1";
-const RADIAN: &str = "rad";
-const DEGREE: &str = "deg";
-const STOP_TIME: f64 = 100.0;
-const STEP_SIZE: f64 = 0.1;
-
-/// The text of `modelDescription.xml`.
+/// The text of the `modelDescription.xml` of a model.
 #[must_use]
-pub fn xml() -> String {
+pub fn xml<M: Model>() -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let mut serializer = quick_xml::se::Serializer::new(&mut text);
     serializer.indent(' ', 2);
     // Attributes of plain numbers and texts: there is nothing that could fail,
     // and a test reads the result back.
-    let written = description().serialize(serializer);
+    let written = description::<M>().serialize(serializer);
     debug_assert!(written.is_ok(), "{written:?}");
     text.push('\n');
     text
 }
 
-fn description() -> FmiModelDescription {
+fn description<M: Model>() -> FmiModelDescription {
     FmiModelDescription {
         fmi_version: "2.0",
-        model_name: MODEL_IDENTIFIER,
-        guid: GUID,
-        description: env!("CARGO_PKG_DESCRIPTION"),
+        model_name: M::IDENTIFIER,
+        guid: M::GUID,
+        description: M::DESCRIPTION,
         version: env!("CARGO_PKG_VERSION"),
         license: env!("CARGO_PKG_LICENSE"),
         generation_tool: concat!(env!("CARGO_PKG_NAME"), " ", env!("CARGO_PKG_VERSION")),
         variable_naming_convention: "flat",
-        number_of_event_indicators: INDICATOR_COUNT,
+        number_of_event_indicators: M::INDICATOR_COUNT,
         model_exchange: ModelExchange {
-            model_identifier: MODEL_IDENTIFIER,
+            model_identifier: M::IDENTIFIER,
             can_be_instantiated_only_once_per_process: false,
             can_not_use_memory_management_functions: true,
             can_get_and_set_fmu_state: true,
@@ -73,7 +61,7 @@ fn description() -> FmiModelDescription {
             provides_directional_derivative: true,
         },
         co_simulation: CoSimulation {
-            model_identifier: MODEL_IDENTIFIER,
+            model_identifier: M::IDENTIFIER,
             can_handle_variable_communication_step_size: true,
             can_interpolate_inputs: true,
             max_output_derivative_order: OUTPUT_DERIVATIVE_ORDER,
@@ -85,37 +73,10 @@ fn description() -> FmiModelDescription {
             provides_directional_derivative: true,
         },
         unit_definitions: UnitDefinitions {
-            unit: vec![
-                schema::Unit {
-                    name: NUMBER,
-                    base_unit: BaseUnit { rad: None },
-                    display_unit: None,
-                },
-                schema::Unit {
-                    name: RADIAN,
-                    base_unit: BaseUnit { rad: Some(1) },
-                    display_unit: Some(DisplayUnit {
-                        name: DEGREE,
-                        factor: Number(1.0_f64.to_degrees()),
-                    }),
-                },
-            ],
+            unit: unit_definitions::<M>(),
         },
         type_definitions: TypeDefinitions {
-            simple_type: vec![SimpleType {
-                name: TYPE_NAME,
-                enumeration: Items {
-                    item: ON_PULL_IN
-                        .iter()
-                        .zip(1..)
-                        .map(|(&(name, description), value)| Item {
-                            name,
-                            value,
-                            description,
-                        })
-                        .collect(),
-                },
-            }],
+            simple_type: enumerations::<M>(),
         },
         log_categories: LogCategories {
             category: LOG_CATEGORIES
@@ -124,35 +85,97 @@ fn description() -> FmiModelDescription {
         },
         default_experiment: DefaultExperiment {
             start_time: Number(0.0),
-            stop_time: Number(STOP_TIME),
+            stop_time: Number(M::EXPERIMENT.stop_time),
             tolerance: Number(DEFAULT_TOLERANCE),
-            step_size: Number(STEP_SIZE),
+            step_size: Number(M::EXPERIMENT.step_size),
         },
         model_variables: ModelVariables {
-            scalar_variable: VARIABLES.iter().zip(0..).map(scalar_variable).collect(),
+            scalar_variable: M::VARIABLES.iter().zip(0..).map(scalar_variable).collect(),
         },
-        model_structure: model_structure(),
+        model_structure: model_structure::<M>(),
     }
 }
 
-fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVariable {
+/// The units that the variables of a model have, each once, in the order of the table.
+fn unit_definitions<M: Model>() -> Vec<schema::Unit> {
+    let mut units: Vec<&Unit> = Vec::new();
+    for variable in M::VARIABLES {
+        if units.iter().all(|unit| unit.name != variable.unit.name) {
+            units.push(variable.unit);
+        }
+    }
+    units.into_iter().map(unit_definition).collect()
+}
+
+fn unit_definition(unit: &Unit) -> schema::Unit {
+    let exponent = |name: &str| {
+        let found = unit.base.iter().find(|(base, _)| *base == name);
+        found.map(|&(_, exponent)| exponent)
+    };
+    schema::Unit {
+        name: unit.name,
+        base_unit: BaseUnit {
+            kg: exponent("kg"),
+            m: exponent("m"),
+            s: exponent("s"),
+            ampere: exponent("A"),
+            rad: exponent("rad"),
+        },
+        display_unit: unit
+            .displayed
+            .iter()
+            .map(|displayed| DisplayUnit {
+                name: displayed.name,
+                factor: Number(displayed.factor),
+            })
+            .collect(),
+    }
+}
+
+/// The enumerations that the variables of a model have, each once, in the order of the table.
+fn enumerations<M: Model>() -> Vec<SimpleType> {
+    let mut types: Vec<&variables::Enumeration> = Vec::new();
+    for variable in M::VARIABLES {
+        if let Kind::Enumeration(enumeration) = variable.kind
+            && types.iter().all(|known| known.name != enumeration.name)
+        {
+            types.push(enumeration);
+        }
+    }
+    let items = |enumeration: &variables::Enumeration| {
+        let numbered = enumeration.items.iter().zip(1..);
+        numbered
+            .map(|(&(name, description), value)| Item {
+                name,
+                value,
+                description,
+            })
+            .collect()
+    };
+    let simple_type = |enumeration: &variables::Enumeration| SimpleType {
+        name: enumeration.name,
+        enumeration: Items {
+            item: items(enumeration),
+        },
+    };
+    types.into_iter().map(simple_type).collect()
+}
+
+fn scalar_variable<M: Model>((variable, value_reference): (&Variable<M>, u32)) -> ScalarVariable {
     let start = variable.start;
     let (mut real, mut boolean, mut enumeration) = (None, None, None);
     match variable.kind {
         Kind::Real { min, max, nominal } => {
             real = Some(Real {
-                unit: match variable.unit {
-                    Unit::One => NUMBER,
-                    Unit::Angle | Unit::AngularFrequency => RADIAN,
-                },
-                display_unit: (variable.unit == Unit::Angle).then_some(DEGREE),
+                unit: variable.unit.name,
+                display_unit: variable.unit.displayed.first().map(|unit| unit.name),
                 min: Number(min),
                 max: Number(max),
                 nominal: Number(nominal),
                 start: start.map(Number),
-                derivative: variable.derivative_of.map(index),
+                derivative: variable.derivative_of.map(index::<M>),
                 // A collapse sets the states.
-                reinit: STATES.contains(&value_reference).then_some(true),
+                reinit: M::STATES.contains(&value_reference).then_some(true),
             });
         }
         Kind::Boolean => {
@@ -160,11 +183,11 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
                 start: start.map(|value| value == 1.0),
             })
         }
-        Kind::Enumeration => {
+        Kind::Enumeration(of) => {
             enumeration = Some(Enumeration {
-                declared_type: TYPE_NAME,
+                declared_type: of.name,
                 min: 1,
-                max: ON_PULL_IN.len(),
+                max: of.items.len(),
                 start: start.map(|value| value as usize),
             });
         }
@@ -199,43 +222,43 @@ fn scalar_variable((variable, value_reference): (&Variable, u32)) -> ScalarVaria
 
 /// The outputs follow from the states alone, so that no step has an algebraic
 /// loop through them.
-fn model_structure() -> ModelStructure {
-    let mut initial: Vec<&Variable> = outputs().collect();
-    initial.extend(STATES.iter().chain(&DERIVATIVES).map(row));
-    initial.sort_by_key(|variable| index(variable.name));
+fn model_structure<M: Model>() -> ModelStructure {
+    let mut initial: Vec<&Variable<M>> = outputs().collect();
+    initial.extend(M::STATES.iter().chain(M::DERIVATIVES).map(row));
+    initial.sort_by_key(|variable| index::<M>(variable.name));
     initial.dedup_by_key(|variable| variable.name);
     ModelStructure {
-        outputs: unknowns(outputs(), |from| from.now),
-        derivatives: unknowns(DERIVATIVES.iter().map(row), |from| from.now),
-        initial_unknowns: unknowns(initial.into_iter(), |from| from.at_start),
+        outputs: unknowns(outputs::<M>(), |from| from.now),
+        derivatives: unknowns::<M>(M::DERIVATIVES.iter().map(row), |from| from.now),
+        initial_unknowns: unknowns::<M>(initial.into_iter(), |from| from.at_start),
     }
 }
 
-fn outputs() -> impl Iterator<Item = &'static Variable> {
-    VARIABLES
+fn outputs<M: Model>() -> impl Iterator<Item = &'static Variable<M>> {
+    M::VARIABLES
         .iter()
         .filter(|variable| variable.causality == Causality::Output)
 }
 
-fn row(reference: &u32) -> &'static Variable {
-    &VARIABLES[*reference as usize]
+fn row<M: Model>(reference: &u32) -> &'static Variable<M> {
+    &M::VARIABLES[*reference as usize]
 }
 
 /// The variables with those of their dependencies that `pick` chooses.
-fn unknowns(
-    variables: impl Iterator<Item = &'static Variable>,
+fn unknowns<M: Model>(
+    variables: impl Iterator<Item = &'static Variable<M>>,
     pick: fn(Dependencies) -> &'static [&'static str],
 ) -> Unknowns {
-    let unknown = |variable: &Variable| {
+    let unknown = |variable: &Variable<M>| {
         let from = match variable.access {
             Access::Result { dependencies, .. } => pick(dependencies),
             _ => &[],
         };
-        let mut places: Vec<u32> = from.iter().map(|name| index(name)).collect();
+        let mut places: Vec<u32> = from.iter().map(|name| index::<M>(name)).collect();
         places.sort_unstable();
         let places: Vec<String> = places.iter().map(u32::to_string).collect();
         Unknown {
-            index: index(variable.name),
+            index: index::<M>(variable.name),
             dependencies: places.join(" "),
         }
     };
@@ -245,6 +268,6 @@ fn unknowns(
 }
 
 /// Place of a variable in the list, counted from 1.
-fn index(name: &str) -> u32 {
-    value_reference(name).map_or(0, |reference| reference + 1)
+fn index<M: Model>(name: &str) -> u32 {
+    value_reference::<M>(name).map_or(0, |reference| reference + 1)
 }

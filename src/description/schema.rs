@@ -104,12 +104,21 @@ pub struct Unit {
     pub name: &'static str,
     #[serde(rename = "BaseUnit")]
     pub base_unit: BaseUnit,
-    #[serde(rename = "DisplayUnit", skip_serializing_if = "Option::is_none")]
-    pub display_unit: Option<DisplayUnit>,
+    #[serde(rename = "DisplayUnit", skip_serializing_if = "Vec::is_empty")]
+    pub display_unit: Vec<DisplayUnit>,
 }
 
+/// Exponents of the SI base units.
 #[derive(Serialize)]
 pub struct BaseUnit {
+    #[serde(rename = "@kg", skip_serializing_if = "Option::is_none")]
+    pub kg: Option<i32>,
+    #[serde(rename = "@m", skip_serializing_if = "Option::is_none")]
+    pub m: Option<i32>,
+    #[serde(rename = "@s", skip_serializing_if = "Option::is_none")]
+    pub s: Option<i32>,
+    #[serde(rename = "@A", skip_serializing_if = "Option::is_none")]
+    pub ampere: Option<i32>,
     #[serde(rename = "@rad", skip_serializing_if = "Option::is_none")]
     pub rad: Option<i32>,
 }

@@ -4,12 +4,11 @@
 use super::phase::Phase;
 use super::{Fault, Instance, values};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Polynomial};
-use crate::scene::Scene;
-use crate::solver::State;
-use crate::variables::{Access, Causality, Derivatives, Kind, STATES, VARIABLES, Variable};
-use crate::view::{Direction, HIGHEST_ORDER};
+use crate::model::{Direction, Model};
+use crate::solver::jet::HIGHEST_ORDER;
+use crate::variables::{Access, Causality, Derivatives, Kind, Variable};
 
-impl Instance {
+impl<M: Model> Instance<M> {
     /// Sets derivatives of inputs, each given by value reference, order and value.
     ///
     /// An input with derivatives is a polynomial in the time since they were
@@ -25,7 +24,7 @@ impl Instance {
         derivatives: &[f64],
     ) -> Result<(), Fault> {
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
-            let variable = values::row(reference)?;
+            let variable = values::row::<M>(reference)?;
             let name = variable.name;
             if !matches!(variable.access, Access::Input { .. }) {
                 return Err(Fault::error(format!(
@@ -36,20 +35,20 @@ impl Instance {
             check_finite(name, value)?;
         }
         self.bring_drive_up_to_date();
-        let before = self.scene.drive;
+        let before = self.scene.clone();
         for ((&reference, &order), &value) in references.iter().zip(orders).zip(derivatives) {
-            let Access::Input { of, .. } = VARIABLES[reference as usize].access else {
+            let Access::Input { of, .. } = M::VARIABLES[reference as usize].access else {
                 continue;
             };
             let input = of(&mut self.scene);
-            let bit = 1 << reference;
+            let bit = values::input_bit::<M>(reference);
             if self.fresh_derivatives & bit == 0 {
                 *input = Polynomial::constant(input.value());
                 self.fresh_derivatives |= bit;
             }
             input.set_derivative(order as usize, value);
         }
-        if self.scene.drive != before {
+        if self.scene != before {
             self.changed();
         }
         Ok(())
@@ -70,7 +69,7 @@ impl Instance {
         mut store: impl FnMut(usize, f64),
     ) -> Result<(), Fault> {
         for (&reference, &order) in references.iter().zip(orders) {
-            let variable = values::row(reference)?;
+            let variable = values::row::<M>(reference)?;
             if variable.causality != Causality::Output || derivatives_of(variable).is_none() {
                 return Err(Fault::error(format!(
                     "{} is not a real output; derivatives can be got for those only",
@@ -80,9 +79,9 @@ impl Instance {
             check_order(variable.name, order, HIGHEST_ORDER)?;
         }
         let highest = orders.iter().max().map_or(0, |&order| order as usize);
-        let motion = self.view().from_now_on(highest);
+        let motion = M::from_now_on(&self.view(), highest);
         for (place, (&reference, &order)) in references.iter().zip(orders).enumerate() {
-            let Some(derivatives) = derivatives_of(&VARIABLES[reference as usize]) else {
+            let Some(derivatives) = derivatives_of(&M::VARIABLES[reference as usize]) else {
                 continue;
             };
             let factorial: f64 = (1..=order).map(f64::from).product();
@@ -109,7 +108,7 @@ impl Instance {
         mut store: impl FnMut(usize, f64),
     ) -> Result<(), Fault> {
         for &unknown in unknowns {
-            let variable = values::row(unknown)?;
+            let variable = values::row::<M>(unknown)?;
             if derivatives_of(variable).is_none() {
                 return Err(Fault::error(format!(
                     "{} has no directional derivative; ask for an output, the derivative \
@@ -118,9 +117,9 @@ impl Instance {
                 )));
             }
         }
-        let moment = self.view().along(&self.direction(knowns, changes)?);
+        let moment = M::along(&self.view(), &self.direction(knowns, changes)?);
         for (place, &unknown) in unknowns.iter().enumerate() {
-            if let Some(derivatives) = derivatives_of(&VARIABLES[unknown as usize]) {
+            if let Some(derivatives) = derivatives_of(&M::VARIABLES[unknown as usize]) {
                 store(place, (derivatives.along)(&moment).slope());
             }
         }
@@ -129,14 +128,14 @@ impl Instance {
 
     /// The direction in which the `knowns` change as given: a scene and a state
     /// filled in by the setters of the table.
-    fn direction(&self, knowns: &[u32], changes: &[f64]) -> Result<Direction, Fault> {
+    fn direction(&self, knowns: &[u32], changes: &[f64]) -> Result<Direction<M>, Fault> {
         let mut direction = Direction {
-            scene: Scene::BLANK,
-            state: Scene::BLANK.start,
+            state: M::start(&M::blank()),
+            scene: M::blank(),
         };
         let begun = self.phase != Phase::Initialization;
         for (&known, &change) in knowns.iter().zip(changes) {
-            let variable = values::row(known)?;
+            let variable = values::row::<M>(known)?;
             check_finite(variable.name, change)?;
             match (variable.access, variable.kind) {
                 (Access::Input { of, .. }, _) => {
@@ -147,35 +146,33 @@ impl Instance {
                     let sum = get(&direction.scene) + change;
                     set(&mut direction.scene, sum);
                 }
-                _ => match state_component(&mut direction.state, known) {
+                _ => match state_component::<M>(&mut direction.state, known) {
                     Some(component) if begun => *component += change,
                     _ => return Err(not_known(variable)),
                 },
             }
         }
         if !begun {
-            direction.state = direction.scene.start;
+            direction.state = M::start(&direction.scene);
         }
         Ok(direction)
     }
 }
 
 /// The number of a state to which a state variable belongs.
-fn state_component(state: &mut State, reference: u32) -> Option<&mut f64> {
-    let place = STATES.iter().position(|state| *state == reference)?;
-    [&mut state.position, &mut state.rate]
-        .into_iter()
-        .nth(place)
+fn state_component<M: Model>(state: &mut M::State, reference: u32) -> Option<&mut f64> {
+    let place = M::STATES.iter().position(|state| *state == reference)?;
+    M::component(state, place)
 }
 
-fn derivatives_of(variable: &Variable) -> Option<Derivatives> {
+fn derivatives_of<M: Model>(variable: &Variable<M>) -> Option<Derivatives<M>> {
     match variable.access {
         Access::Result { derivatives, .. } => derivatives,
         _ => None,
     }
 }
 
-fn not_known(variable: &Variable) -> Fault {
+fn not_known<M: Model>(variable: &Variable<M>) -> Fault {
     Fault::error(format!(
         "{} cannot be differentiated by; only real inputs and parameters can, and the \
          states lambda and lambda_dot after initialization",

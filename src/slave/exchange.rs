@@ -4,20 +4,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
-use super::run::describe_collapse;
 use super::{Course, Event, Fault, Instance};
-use crate::scene::{OnPullIn, Scene};
-use crate::solver::State;
+use crate::model::{AtLimit, Collapse, Model};
 use crate::solver::double::Double;
-use crate::solver::limits::Limit;
-use crate::variables::{Access, DERIVATIVES, Kind, STATES, VARIABLES};
-use crate::view::{Collapse, Quantities};
-
-/// Number of continuous states, λ and dλ/dt.
-pub const STATE_COUNT: usize = STATES.len();
-
-/// Number of event indicators: λ − λ_min and λ_max − λ.
-pub const INDICATOR_COUNT: usize = 2;
+use crate::variables::{Access, Kind};
 
 /// A host finds the crossing of a limit to a tolerance, from either side of it:
 /// closer than this part of the limit it has been reached.
@@ -25,10 +15,11 @@ const REACHED: f64 = 1e-9;
 
 /// The moment up to which the host has integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Exchange {
+#[serde(bound = "")]
+pub struct Exchange<M: Model> {
     pub(super) time: Double,
-    pub(super) state: State,
-    pub(super) collapse: Option<Collapse>,
+    pub(super) state: M::State,
+    pub(super) collapse: Option<Collapse<M::Limit>>,
 }
 
 /// What an event has changed.
@@ -42,40 +33,24 @@ pub struct Update {
     pub event: Option<Event>,
 }
 
-impl Exchange {
-    pub(super) fn new(scene: &Scene, time: Double) -> Exchange {
+impl<M: Model> Exchange<M> {
+    pub(super) fn new(scene: &M::Scene, time: Double) -> Exchange<M> {
         Exchange {
             time,
-            state: scene.start,
+            state: M::start(scene),
             collapse: None,
         }
     }
 
     /// Whether the numbers can be those of a motion.
     pub(super) fn is_sound(&self) -> bool {
-        let State { position, rate } = self.state;
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        position.is_finite() && rate.is_finite() && self.time.is_finite() && collapsed.is_finite()
-    }
-
-    /// The limit that lies less than `tolerance`, relative to it, before the
-    /// stretch, which moves towards it, or behind the stretch.
-    fn limit_reached(&self, scene: &Scene, tolerance: f64) -> Option<Limit> {
-        let State { position, rate } = self.state;
-        let limits = scene.limits;
-        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
-        if position >= limits.upper * (1.0 - margin(rate)) {
-            Some(Limit::Upper)
-        } else if position <= limits.lower * (1.0 + margin(-rate)) {
-            Some(Limit::Lower)
-        } else {
-            None
-        }
+        M::is_finite(&self.state) && self.time.is_finite() && collapsed.is_finite()
     }
 }
 
-impl Instance {
-    fn exchange(&mut self) -> Result<&mut Exchange, Fault> {
+impl<M: Model> Instance<M> {
+    fn exchange(&mut self) -> Result<&mut Exchange<M>, Fault> {
         match &mut self.course {
             Course::Exchange(exchange) => Ok(exchange),
             _ => Err(Fault::error("the initialization has not been ended".into())),
@@ -98,34 +73,35 @@ impl Instance {
     /// # Errors
     /// Error before initialization has ended.
     pub fn new_discrete_states(&mut self) -> Result<Update, Fault> {
-        let scene = self.scene;
+        let scene = self.scene.clone();
         let exchange = self.exchange()?;
         let mut update = Update {
-            terminate: exchange.collapse.is_some() && scene.on_pull_in == OnPullIn::Terminate,
+            terminate: false,
             states_changed: false,
             event: None,
         };
-        if exchange.collapse.is_some() {
+        if let Some(Collapse { limit, .. }) = exchange.collapse {
+            update.terminate = M::at_limit(&scene, limit) == AtLimit::Terminate;
             return Ok(update);
         }
-        let Some(limit) = exchange.limit_reached(&scene, REACHED) else {
+        let Some(limit) = M::limit_reached(&scene, &exchange.state, REACHED) else {
             return Ok(update);
         };
         let time = exchange.time;
         exchange.collapse = Some(Collapse { limit, time });
-        let text = describe_collapse(&scene, limit, time.value());
-        let consequence = match scene.on_pull_in {
-            OnPullIn::Hold => {
+        let text = M::describe(&scene, limit, time.value());
+        let consequence = match M::at_limit(&scene, limit) {
+            AtLimit::Hold => {
                 update.states_changed = true;
                 "it stays there (on_pull_in = hold)"
             }
-            OnPullIn::Terminate => {
+            AtLimit::Terminate => {
                 update.terminate = true;
                 "the simulation should end here (on_pull_in = terminate)"
             }
         };
         if update.states_changed {
-            let state = self.view().state();
+            let state = M::state(&self.view());
             self.exchange()?.state = state;
         }
         update.event = Some(Event {
@@ -141,9 +117,9 @@ impl Instance {
     /// # Errors
     /// Error before initialization has ended.
     pub fn completed_integrator_step(&mut self) -> Result<bool, Fault> {
-        let scene = self.scene;
+        let scene = self.scene.clone();
         let exchange = self.exchange()?;
-        Ok(exchange.collapse.is_none() && exchange.limit_reached(&scene, 0.0).is_some())
+        Ok(exchange.collapse.is_none() && M::limit_reached(&scene, &exchange.state, 0.0).is_some())
     }
 
     /// Sets the time of the model.
@@ -160,97 +136,85 @@ impl Instance {
         Ok(())
     }
 
-    /// Sets stretch and stretch rate.
+    /// Sets the continuous states, in the order of [`Model::STATES`].
     ///
     /// # Errors
-    /// Error for another count than [`STATE_COUNT`] or a number that is not finite.
+    /// Error for another count than there are states, or a number that is not finite.
     pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Fault> {
-        let &[position, rate] = states else {
-            return Err(wrong_count("continuous states", states.len(), STATE_COUNT));
-        };
+        let count = M::STATES.len();
+        if states.len() != count {
+            return Err(wrong_count("continuous states", states.len(), count));
+        }
         if let Some(bad) = states.iter().find(|state| !state.is_finite()) {
             return Err(Fault::error(format!(
                 "the continuous state {bad} is not a finite number"
             )));
         }
-        self.exchange()?.state = State { position, rate };
+        let state = &mut self.exchange()?.state;
+        for (place, &value) in states.iter().enumerate() {
+            if let Some(component) = M::component(state, place) {
+                *component = value;
+            }
+        }
         Ok(())
     }
 
-    /// Stretch and stretch rate.
+    /// The continuous states, in the order of [`Model::STATES`].
     ///
     /// # Errors
-    /// Error for another count than [`STATE_COUNT`].
+    /// Error for another count than there are states.
     pub fn continuous_states(&self, states: &mut [f64]) -> Result<(), Fault> {
-        self.read_rows("continuous states", STATES, states)
+        self.read_rows("continuous states", M::STATES, states)
     }
 
     /// The derivatives of the continuous states.
     ///
     /// # Errors
-    /// Error for another count than [`STATE_COUNT`]; Discard where the stretch
-    /// is not positive, or so far out that the derivatives are no numbers.
+    /// Error for another count than there are states; Discard where the model has no
+    /// motion from the present state on.
     pub fn derivatives(&self, derivatives: &mut [f64]) -> Result<(), Fault> {
-        self.read_rows("derivatives", DERIVATIVES, derivatives)?;
-        let stretch = self.view().stretch();
-        if stretch > 0.0 && derivatives.iter().all(|value| value.is_finite()) {
-            return Ok(());
-        }
-        Err(Fault::discard(format!(
-            "there is no motion at the stretch {stretch}; try a shorter step"
-        )))
+        self.read_rows("derivatives", M::DERIVATIVES, derivatives)?;
+        M::check_state(&self.view())
+            .map_err(|why| Fault::discard(format!("{why}; try a shorter step")))
     }
 
-    /// λ − λ_min and λ_max − λ, of which one vanishes where the actuator
-    /// collapses; once it has, nothing is awaited any more and both stay at
-    /// λ_max − λ_min.
+    /// The event indicators of the model.
     ///
     /// # Errors
-    /// Error for another count than [`INDICATOR_COUNT`].
+    /// Error for another count than [`Model::INDICATOR_COUNT`].
     pub fn event_indicators(&self, indicators: &mut [f64]) -> Result<(), Fault> {
         let count = indicators.len();
-        let [lower, upper] = indicators else {
-            return Err(wrong_count("event indicators", count, INDICATOR_COUNT));
-        };
-        let (view, limits) = (self.view(), self.scene.limits);
-        let stretch = view.stretch();
-        (*lower, *upper) = if view.collapse.is_some() {
-            let width = limits.upper - limits.lower;
-            (width, width)
-        } else {
-            (stretch - limits.lower, limits.upper - stretch)
-        };
+        if count != M::INDICATOR_COUNT {
+            return Err(wrong_count("event indicators", count, M::INDICATOR_COUNT));
+        }
+        M::indicators(&self.view(), indicators);
         Ok(())
     }
 
     /// The typical sizes of the continuous states.
     ///
     /// # Errors
-    /// Error for another count than [`STATE_COUNT`].
+    /// Error for another count than there are states.
     pub fn nominals_of_states(&self, nominals: &mut [f64]) -> Result<(), Fault> {
-        if nominals.len() != STATE_COUNT {
-            return Err(wrong_count("nominals", nominals.len(), STATE_COUNT));
+        let count = M::STATES.len();
+        if nominals.len() != count {
+            return Err(wrong_count("nominals", nominals.len(), count));
         }
-        for (value, row) in nominals.iter_mut().zip(STATES) {
-            if let Kind::Real { nominal, .. } = VARIABLES[row as usize].kind {
+        for (value, &row) in nominals.iter_mut().zip(M::STATES) {
+            if let Kind::Real { nominal, .. } = M::VARIABLES[row as usize].kind {
                 *value = nominal;
             }
         }
         Ok(())
     }
 
-    fn read_rows(
-        &self,
-        what: &str,
-        rows: [u32; STATE_COUNT],
-        values: &mut [f64],
-    ) -> Result<(), Fault> {
-        if values.len() != STATE_COUNT {
-            return Err(wrong_count(what, values.len(), STATE_COUNT));
+    fn read_rows(&self, what: &str, rows: &[u32], values: &mut [f64]) -> Result<(), Fault> {
+        if values.len() != rows.len() {
+            return Err(wrong_count(what, values.len(), rows.len()));
         }
         let view = self.view();
-        for (value, row) in values.iter_mut().zip(rows) {
-            if let Access::Result { get, .. } = VARIABLES[row as usize].access {
+        for (value, &row) in values.iter_mut().zip(rows) {
+            if let Access::Result { get, .. } = M::VARIABLES[row as usize].access {
                 *value = get(&view);
             }
         }

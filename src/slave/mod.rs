@@ -12,7 +12,7 @@ mod run;
 mod state;
 mod values;
 
-pub use exchange::{Exchange, INDICATOR_COUNT, STATE_COUNT, Update};
+pub use exchange::{Exchange, Update};
 pub use fault::{Event, Fault, Severity};
 pub use phase::{Call, Interface, Phase};
 pub use run::Run;
@@ -21,9 +21,8 @@ pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::Scene;
+use crate::model::{Model, Motion, Place, View};
 use crate::solver::double::Double;
-use crate::view::{Place, View};
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -49,47 +48,49 @@ impl Experiment {
 
 /// Where the motion is.
 #[derive(Debug, Serialize, Deserialize)]
-enum Course {
+#[serde(bound = "")]
+enum Course<M: Model> {
     /// Initialization has not ended.
     Ahead,
     /// We integrate it.
-    Run(Box<Run>),
+    Run(Box<Run<M>>),
     /// The host integrates it.
-    Exchange(Exchange),
+    Exchange(Exchange<M>),
 }
 
-/// One instance of the actuator.
+/// One instance of a model.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Instance {
+#[serde(bound = "")]
+pub struct Instance<M: Model> {
     interface: Interface,
     phase: Phase,
-    scene: Scene,
+    scene: M::Scene,
     experiment: Experiment,
-    course: Course,
-    /// Bit k: input k has derivatives that no step has used yet.
-    fresh_derivatives: u32,
+    course: Course<M>,
+    /// Which inputs have derivatives that no step has used yet, a bit each.
+    fresh_derivatives: u64,
 }
 
-impl Default for Instance {
-    fn default() -> Instance {
+impl<M: Model> Default for Instance<M> {
+    fn default() -> Instance<M> {
         Instance::new()
     }
 }
 
-impl Instance {
+impl<M: Model> Instance<M> {
     /// An actuator for co-simulation with all variables at their start values.
     #[must_use]
-    pub fn new() -> Instance {
+    pub fn new() -> Instance<M> {
         Instance::of(Interface::CoSimulation)
     }
 
     /// The same for either kind of FMU.
     #[must_use]
-    pub fn of(interface: Interface) -> Instance {
+    pub fn of(interface: Interface) -> Instance<M> {
         Instance {
             interface,
             phase: Phase::Instantiated,
-            scene: Scene::at_start(),
+            scene: M::at_start(),
             experiment: Experiment::DEFAULT,
             course: Course::Ahead,
             fresh_derivatives: 0,
@@ -138,16 +139,16 @@ impl Instance {
 
     /// What can be read at present.
     #[must_use]
-    pub fn view(&self) -> View<'_> {
+    pub fn view(&self) -> View<'_, M> {
         let scene = &self.scene;
         let (place, time, collapse) = match &self.course {
             Course::Run(run) => {
-                let trajectory = run.trajectory();
-                (Place::On(trajectory), trajectory.time(), run.collapse())
+                let motion = run.motion();
+                (Place::On(motion), motion.time(), run.collapse())
             }
             Course::Exchange(now) => (Place::At(now.state), &now.time, now.collapse.as_ref()),
             // The drive counts from the start time.
-            Course::Ahead => (Place::At(scene.start), &scene.drive.since, None),
+            Course::Ahead => (Place::At(M::start(scene)), M::inputs_since(scene), None),
         };
         View {
             scene,
@@ -195,7 +196,7 @@ impl Instance {
             tolerance: kept,
         };
         // Derivatives of inputs that are set before count from the start time.
-        self.scene.drive.since = Double::new(start_time);
+        M::begin_inputs(&mut self.scene, Double::new(start_time));
         Ok((kept != wanted).then(|| Event {
             warning: true,
             text: format!(
@@ -214,17 +215,9 @@ impl Instance {
     /// # Errors
     /// Error where the start stretch does not lie between the limits.
     pub fn exit_initialization(&mut self) -> Result<(), Fault> {
-        let start = self.scene.start.position;
-        let limits = self.scene.limits;
-        if !(limits.lower < start && start < limits.upper) {
-            return Err(Fault::error(format!(
-                "lambda_start = {start} does not lie between lambda_min = {} and lambda_max = {}; \
-                 set it, or the limits, so that it does",
-                limits.lower, limits.upper
-            )));
-        }
+        M::check_start(&self.scene).map_err(Fault::error)?;
         let time = Double::new(self.experiment.start_time);
-        self.scene.drive.since = time;
+        M::begin_inputs(&mut self.scene, time);
         match self.interface {
             Interface::CoSimulation => {
                 let tolerance = self.experiment.tolerance;
@@ -288,7 +281,7 @@ impl Instance {
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
         if let Course::Run(run) = &self.course {
-            self.scene.drive.rebase(*run.trajectory().time());
+            M::rebase_inputs(&mut self.scene, *run.motion().time());
         }
     }
 

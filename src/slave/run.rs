@@ -4,11 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Event, Fault};
-use crate::scene::{OnPullIn, Scene};
+use crate::model::{AtLimit, Collapse, Model, Motion};
 use crate::solver::double::Double;
-use crate::solver::limits::Limit;
-use crate::solver::trajectory::{Failure, Progress, Trajectory};
-use crate::view::Collapse;
+use crate::solver::trajectory::{Failure, Progress};
 
 /// A communication point may be off by this part of the time: hosts sum up
 /// their steps in different ways, up to 1e7 of them.
@@ -19,44 +17,38 @@ const STEP_ROUNDING: f64 = 1e-6;
 
 /// A running simulation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct Run {
-    trajectory: Trajectory,
-    collapse: Option<Collapse>,
+#[serde(bound = "")]
+pub struct Run<M: Model> {
+    motion: M::Motion,
+    collapse: Option<Collapse<M::Limit>>,
     /// The scene has changed since the trajectory has followed it.
     stale: bool,
 }
 
-impl Run {
-    pub(super) fn new(scene: &Scene, time: Double, tolerance: f64) -> Run {
-        let mut trajectory = Trajectory::new(scene.start, time, scene.limits, tolerance);
-        if scene.record_extremes {
-            trajectory = trajectory.recording_extremes();
-        }
+impl<M: Model> Run<M> {
+    pub(super) fn new(scene: &M::Scene, time: Double, tolerance: f64) -> Run<M> {
         Run {
-            trajectory,
+            motion: M::Motion::begin(scene, time, tolerance),
             collapse: None,
             stale: false,
         }
     }
 
     /// Whether the numbers fit together as those of a motion of the scene.
-    pub(super) fn is_sound(&self, scene: &Scene, tolerance: f64) -> bool {
+    pub(super) fn is_sound(&self, scene: &M::Scene, tolerance: f64) -> bool {
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        self.trajectory.is_sound()
-            && self.trajectory.keeps_to(scene.limits, tolerance)
-            && self.trajectory.extremes().is_some() == scene.record_extremes
-            && collapsed.is_finite()
+        self.motion.is_valid(scene, tolerance) && collapsed.is_finite()
     }
 
     /// The motion so far.
     #[must_use]
-    pub fn trajectory(&self) -> &Trajectory {
-        &self.trajectory
+    pub fn motion(&self) -> &M::Motion {
+        &self.motion
     }
 
     /// Whether and when the actuator has collapsed.
     #[must_use]
-    pub fn collapse(&self) -> Option<&Collapse> {
+    pub fn collapse(&self) -> Option<&Collapse<M::Limit>> {
         self.collapse.as_ref()
     }
 
@@ -76,7 +68,7 @@ impl Run {
                 "the communication step {step} is not a finite number above 0"
             )));
         }
-        let time = self.trajectory.time().value();
+        let time = self.motion.time().value();
         let rounding = TIME_ROUNDING * time.abs() + STEP_ROUNDING * step;
         let off = (current - time).abs();
         if off.is_nan() || off > rounding {
@@ -97,30 +89,30 @@ impl Run {
     }
 
     /// Follows the motion for one step that has been checked.
-    pub(super) fn step(&mut self, scene: &Scene, step: f64) -> Result<Option<Event>, Fault> {
+    pub(super) fn step(&mut self, scene: &M::Scene, step: f64) -> Result<Option<Event>, Fault> {
         if self.collapse.is_some() {
-            self.trajectory.wait(Double::new(step));
+            self.motion.wait(Double::new(step));
             return Ok(None);
         }
         if self.stale {
-            self.trajectory.restart();
+            self.motion.restart();
             self.stale = false;
         }
-        match self.trajectory.advance(scene, step) {
+        match self.motion.advance(scene, step) {
             Ok(Progress::Whole) => Ok(None),
             Ok(Progress::Stopped { limit, after }) => {
-                let time = *self.trajectory.time();
+                let time = *self.motion.time();
                 self.collapse = Some(Collapse { limit, time });
-                let text = describe_collapse(scene, limit, time.value());
-                match scene.on_pull_in {
-                    OnPullIn::Hold => {
-                        self.trajectory.wait(Double::new(step).plus(-after));
+                let text = M::describe(scene, limit, time.value());
+                match M::at_limit(scene, limit) {
+                    AtLimit::Hold => {
+                        self.motion.wait(Double::new(step).plus(-after));
                         Ok(Some(Event {
                             warning: false,
                             text: format!("{text}; it stays there (on_pull_in = hold)"),
                         }))
                     }
-                    OnPullIn::Terminate => Err(Fault::discard(format!(
+                    AtLimit::Terminate => Err(Fault::discard(format!(
                         "{text}; the simulation should end here (on_pull_in = terminate)"
                     ))),
                 }
@@ -138,24 +130,10 @@ impl Run {
                 format!("the step needs more than {most} substeps; use shorter steps")
             }
         };
-        let time = self.trajectory.time().value();
-        let stretch = self.trajectory.position();
+        let time = self.motion.time().value();
+        let place = self.motion.whereabouts();
         Fault::discard(format!(
-            "the integration stopped at time {time} and stretch {stretch}: {why}"
+            "the integration stopped at time {time} and {place}: {why}"
         ))
-    }
-}
-
-/// A collapse in words.
-pub(super) fn describe_collapse(scene: &Scene, limit: Limit, time: f64) -> String {
-    match limit {
-        Limit::Upper => format!(
-            "the actuator was pulled in: at time {time} its stretch reached lambda_max = {}",
-            scene.limits.upper
-        ),
-        Limit::Lower => format!(
-            "the actuator collapsed: at time {time} its stretch came down to lambda_min = {}",
-            scene.limits.lower
-        ),
     }
 }

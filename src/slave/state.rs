@@ -11,12 +11,13 @@
 //! the actuator as they say, until an input or a parameter changes.
 
 use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE};
-use crate::variables::{Access, VARIABLES};
+use crate::model::Model;
+use crate::variables::Access;
 
 /// Grows with each change of what the bytes mean.
 pub const LAYOUT: u16 = 3;
 
-impl Instance {
+impl<M: Model> Instance<M> {
     /// The instance as bytes, in the memory of `buffer`.
     ///
     /// # Errors
@@ -32,13 +33,13 @@ impl Instance {
     /// # Errors
     /// Error where the bytes are none of [`Instance::save`], or an instance of
     /// another kind of FMU.
-    pub fn saved(&self, bytes: &[u8]) -> Result<Instance, Fault> {
+    pub fn saved(&self, bytes: &[u8]) -> Result<Instance<M>, Fault> {
         let damaged = |why: &str| {
             Fault::error(format!(
                 "the state is damaged ({why}); save it again with fmi2GetFMUstate"
             ))
         };
-        let (saved, rest) = postcard::take_from_bytes::<Instance>(bytes)
+        let (saved, rest) = postcard::take_from_bytes::<Instance<M>>(bytes)
             .map_err(|error| damaged(&error.to_string()))?;
         if !rest.is_empty() {
             return Err(damaged("it is too long"));
@@ -66,12 +67,12 @@ impl Instance {
     /// Checks that the numbers of an instance read from bytes fit together (see the
     /// head of this file).
     fn check_soundness(&self) -> Result<(), String> {
-        for variable in &VARIABLES {
+        for variable in M::VARIABLES {
             if let Access::Setting { get, .. } = variable.access {
                 variable.check(get(&self.scene))?;
             }
         }
-        if !self.scene.drive.is_finite() {
+        if !M::inputs_are_finite(&self.scene) {
             return Err("an input is not a finite number".into());
         }
         if !self.experiment.is_sound() {

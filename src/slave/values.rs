@@ -2,8 +2,8 @@
 
 use super::{Fault, Instance};
 use crate::actuator::drive::Polynomial;
-use crate::variables::{Access, Kind, ON_PULL_IN, VARIABLES, Variability, Variable};
-use crate::view::Quantities;
+use crate::model::Model;
+use crate::variables::{Access, Kind, Variability, Variable};
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,37 +28,37 @@ impl Type {
         }
     }
 
-    fn is_of(self, variable: &Variable) -> bool {
+    fn is_of<M: Model>(self, variable: &Variable<M>) -> bool {
         match variable.kind {
             Kind::Real { .. } => self == Type::Real,
             Kind::Boolean => self == Type::Boolean,
-            Kind::Enumeration => self == Type::Integer,
+            Kind::Enumeration(_) => self == Type::Integer,
         }
     }
 }
 
 /// The variable of a value reference.
-pub(super) fn row(reference: u32) -> Result<&'static Variable, Fault> {
-    VARIABLES.get(reference as usize).ok_or_else(|| {
+pub(super) fn row<M: Model>(reference: u32) -> Result<&'static Variable<M>, Fault> {
+    M::VARIABLES.get(reference as usize).ok_or_else(|| {
         Fault::error(format!(
             "there is no variable with value reference {reference}; the largest is {}",
-            VARIABLES.len() - 1
+            M::VARIABLES.len() - 1
         ))
     })
 }
 
 #[inline]
-fn typed(reference: u32, wanted: Type) -> Result<&'static Variable, Fault> {
-    match VARIABLES.get(reference as usize) {
+fn typed<M: Model>(reference: u32, wanted: Type) -> Result<&'static Variable<M>, Fault> {
+    match M::VARIABLES.get(reference as usize) {
         Some(variable) if wanted.is_of(variable) => Ok(variable),
-        _ => Err(not_of_type(reference, wanted)),
+        _ => Err(not_of_type::<M>(reference, wanted)),
     }
 }
 
 /// Why a value reference is not that of a variable of this type.
 #[cold]
-fn not_of_type(reference: u32, wanted: Type) -> Fault {
-    match row(reference) {
+fn not_of_type<M: Model>(reference: u32, wanted: Type) -> Fault {
+    match row::<M>(reference) {
         Ok(variable) => Fault::error(format!(
             "{} (value reference {reference}) is not of type {}",
             variable.name,
@@ -68,7 +68,23 @@ fn not_of_type(reference: u32, wanted: Type) -> Fault {
     }
 }
 
-impl Instance {
+/// The bit of an input in [`Instance::fresh_derivatives`]: inputs are counted among themselves.
+pub(super) fn input_bit<M: Model>(reference: u32) -> u64 {
+    const { assert!(input_count::<M>() <= u64::BITS as usize, "too many inputs") };
+    let before = &M::VARIABLES[..reference as usize];
+    1 << before.iter().filter(|row| row.is_input()).count()
+}
+
+const fn input_count<M: Model>() -> usize {
+    let (mut count, mut row) = (0, 0);
+    while row < M::VARIABLES.len() {
+        count += M::VARIABLES[row].is_input() as usize;
+        row += 1;
+    }
+    count
+}
+
+impl<M: Model> Instance<M> {
     /// Reads the variables of type `wanted` with these value references, each
     /// passed to `store` with its place. Booleans are 0 or 1, enumerations
     /// their item's number.
@@ -84,12 +100,12 @@ impl Instance {
         mut store: impl FnMut(usize, f64),
     ) -> Result<(), Fault> {
         for &reference in references {
-            typed(reference, wanted)?;
+            typed::<M>(reference, wanted)?;
         }
         let view = self.view();
         let mut all_numbers = true;
         for (place, &reference) in references.iter().enumerate() {
-            let value = match VARIABLES[reference as usize].access {
+            let value = match M::VARIABLES[reference as usize].access {
                 Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
                 Access::Setting { get, .. } => get(view.scene),
             };
@@ -99,10 +115,10 @@ impl Instance {
         if all_numbers {
             return Ok(());
         }
-        Err(Fault::discard(format!(
-            "a result is no number at the stretch {}; try a shorter step",
-            view.stretch()
-        )))
+        let why = M::check_state(&view)
+            .err()
+            .unwrap_or("a result is no number".into());
+        Err(Fault::discard(format!("{why}; try a shorter step")))
     }
 
     /// Sets the variables of type `wanted` with these value references.
@@ -118,18 +134,18 @@ impl Instance {
         value: impl Fn(usize) -> f64,
     ) -> Result<(), Fault> {
         for (place, &reference) in references.iter().enumerate() {
-            let variable = typed(reference, wanted)?;
+            let variable = typed::<M>(reference, wanted)?;
             self.check_settable(variable)?;
             check_value(variable, value(place))?;
         }
         self.bring_drive_up_to_date();
         for (place, &reference) in references.iter().enumerate() {
             let value = value(place);
-            let changed = match VARIABLES[reference as usize].access {
+            let changed = match M::VARIABLES[reference as usize].access {
                 Access::Input { of, .. } => {
                     let input = of(&mut self.scene);
                     // Derivatives belong to the value they were set with.
-                    let new = if self.fresh_derivatives & (1 << reference) == 0 {
+                    let new = if self.fresh_derivatives & input_bit::<M>(reference) == 0 {
                         Polynomial::constant(value)
                     } else {
                         input.with_value(value)
@@ -155,7 +171,7 @@ impl Instance {
     }
 
     #[inline]
-    fn check_settable(&self, variable: &Variable) -> Result<(), Fault> {
+    fn check_settable(&self, variable: &Variable<M>) -> Result<(), Fault> {
         // Tunable parameters in continuous-time mode go beyond the standard: FMPy sets
         // them there, with the inputs.
         let fixed = variable.variability == Variability::Fixed && self.phase.has_begun();
@@ -168,7 +184,7 @@ impl Instance {
 
 /// Why a variable cannot be set, or not any more.
 #[cold]
-fn not_settable(variable: &Variable) -> Fault {
+fn not_settable<M: Model>(variable: &Variable<M>) -> Fault {
     let name = variable.name;
     Fault::error(match variable.access {
         Access::Result { .. } => format!("{name} is a result of the model and cannot be set"),
@@ -179,9 +195,11 @@ fn not_settable(variable: &Variable) -> Fault {
 }
 
 #[inline]
-fn check_value(variable: &Variable, value: f64) -> Result<(), Fault> {
-    let items = ON_PULL_IN.len();
-    if variable.kind == Kind::Enumeration && !(1.0..=items as f64).contains(&value) {
+fn check_value<M: Model>(variable: &Variable<M>, value: f64) -> Result<(), Fault> {
+    if let Kind::Enumeration(enumeration) = variable.kind
+        && let items = enumeration.items.len()
+        && !(1.0..=items as f64).contains(&value)
+    {
         return Err(Fault::error(format!(
             "{} = {value} is not an item of its enumeration; set 1 to {items}",
             variable.name

@@ -21,6 +21,13 @@ pub struct Jet<const TERMS: usize> {
 /// A value and its change in one direction.
 pub type Dual = Jet<2>;
 
+/// Highest order of the derivatives with respect to time that are offered.
+pub const HIGHEST_ORDER: usize = 5;
+
+/// A quantity as a power series in the time from now on, right up to
+/// [`HIGHEST_ORDER`] even for the second derivative of a state.
+pub type TimeSeries = Jet<{ HIGHEST_ORDER + 3 }>;
+
 impl Dual {
     /// A number that changes at the rate `slope`.
     #[must_use]

@@ -4,13 +4,13 @@ use super::limits::Limit;
 
 /// How far an advance came.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress {
+pub enum Progress<L = Limit> {
     /// As far as asked.
     Whole,
     /// To a limit, this long after the begin of the advance.
     Stopped {
         /// The limit.
-        limit: Limit,
+        limit: L,
         /// The time from the begin of the advance to the limit.
         after: f64,
     },

@@ -1,19 +1,19 @@
-//! The table of variables: one row each, the only place that says what a
-//! variable is called, what it means, between which limits it lies, where it
-//! starts, and how it is read and set. The model description, the checks of the
-//! setters and the generators of the tests all follow from it.
+//! What a table of variables is made of: one row each, the only place that says
+//! what a variable is called, what it means, between which limits it lies, where
+//! it starts, and how it is read and set. The model description, the checks of
+//! the setters and the generators of the tests all follow from it.
 //!
-//! The position of a row in [`VARIABLES`] is the variable's value reference.
+//! Each [`Model`] has a table of its own. The position of a row in it is the
+//! variable's value reference.
 
 use crate::actuator::drive::Polynomial;
-use crate::scene::Scene;
-use crate::solver::jet::Dual;
-use crate::view::{Moment, Series, View};
+use crate::model::{Model, View};
+use crate::solver::jet::{Dual, TimeSeries};
 
-mod rows;
-mod table;
+pub mod rows;
+pub mod units;
 
-pub use table::VARIABLES;
+pub use units::Unit;
 
 /// Role of a variable (FMI 2.0, section 2.2.7).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,56 +55,52 @@ pub enum Kind {
     },
     /// True or false; 1 or 0 in this table.
     Boolean,
-    /// One of the items of [`ON_PULL_IN`]; its number in this table.
-    Enumeration,
+    /// One of the items of an enumeration; its number in this table.
+    Enumeration(&'static Enumeration),
 }
 
-/// The unit of a variable. Time and length have none here, so that there are two.
+/// A type whose values are named.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Unit {
-    /// 1, a pure number.
-    One,
-    /// Radian, to be shown in degrees.
-    Angle,
-    /// Radians per unit of time.
-    AngularFrequency,
+pub struct Enumeration {
+    /// The name of the type.
+    pub name: &'static str,
+    /// Name and meaning of each item, numbered from 1.
+    pub items: &'static [(&'static str, &'static str)],
 }
 
 /// How a variable is read and set.
-#[derive(Clone, Copy)]
-pub enum Access {
+pub enum Access<M: Model> {
     /// A function of time that the host prescribes.
     Input {
         /// The present value.
-        get: fn(&View) -> f64,
+        get: fn(&View<M>) -> f64,
         /// The function of time.
-        of: fn(&mut Scene) -> &mut Polynomial,
+        of: fn(&mut M::Scene) -> &mut Polynomial,
     },
     /// A number that the host sets.
     Setting {
         /// The number.
-        get: fn(&Scene) -> f64,
+        get: fn(&M::Scene) -> f64,
         /// Sets it.
-        set: fn(&mut Scene, f64),
+        set: fn(&mut M::Scene, f64),
     },
     /// A result.
     Result {
         /// Computes it.
-        get: fn(&View) -> f64,
+        get: fn(&View<M>) -> f64,
         /// Its derivatives, where it has any that are offered.
-        derivatives: Option<Derivatives>,
+        derivatives: Option<Derivatives<M>>,
         /// On what it depends.
         dependencies: Dependencies,
     },
 }
 
 /// The derivatives of a result.
-#[derive(Clone, Copy)]
-pub struct Derivatives {
+pub struct Derivatives<M: Model> {
     /// The result as it changes in a direction.
-    pub along: fn(&Moment<Dual>) -> Dual,
+    pub along: fn(&M::Sample<Dual>) -> Dual,
     /// The result as a series in time.
-    pub from_now_on: fn(&Moment<Series>) -> Series,
+    pub from_now_on: fn(&M::Sample<TimeSeries>) -> TimeSeries,
 }
 
 /// The names of the variables on which a result depends.
@@ -117,8 +113,7 @@ pub struct Dependencies {
 }
 
 /// One variable.
-#[derive(Clone, Copy)]
-pub struct Variable {
+pub struct Variable<M: Model> {
     /// The name in the model description.
     pub name: &'static str,
     /// Its meaning, for people.
@@ -130,52 +125,60 @@ pub struct Variable {
     /// Its type and limits.
     pub kind: Kind,
     /// The unit of a real one.
-    pub unit: Unit,
+    pub unit: &'static Unit,
     /// The value before the host sets another; none for results.
     pub start: Option<f64>,
     /// The name of the state of which this is the derivative.
     pub derivative_of: Option<&'static str>,
     /// How it is read and set.
-    pub access: Access,
+    pub access: Access<M>,
 }
 
-/// The items of the enumeration type of `on_pull_in`, numbered from 1.
-pub const ON_PULL_IN: [(&str, &str); 2] = [
-    ("hold", "the actuator stays at the limit and steps go on"),
-    (
-        "terminate",
-        "the step ends there and the host is asked to terminate",
-    ),
-];
+// Derived, these would ask the same of the scene and the samples of the model, of which there are
+// only function pointers here.
+macro_rules! copied {
+    ($($name:ident),*) => {$(
+        impl<M: Model> Clone for $name<M> {
+            fn clone(&self) -> Self {
+                *self
+            }
+        }
 
-/// Value references of the continuous states, in the order of the table.
-pub const STATES: [u32; ORDER] = states();
+        impl<M: Model> Copy for $name<M> {}
+    )*};
+}
 
-/// Value references of their derivatives, in the same order.
-pub const DERIVATIVES: [u32; ORDER] = derivatives();
+copied!(Access, Derivatives, Variable);
 
-/// Number of continuous states.
-const ORDER: usize = 2;
-
-const fn states() -> [u32; ORDER] {
-    let mut states = [0; ORDER];
+/// Value references of the continuous states of a table, in its order: of the
+/// variables that have a derivative in it.
+///
+/// # Panics
+/// If there is another number of states; at compile time.
+#[must_use]
+pub const fn states<M: Model, const COUNT: usize>(table: &[Variable<M>]) -> [u32; COUNT] {
+    let mut states = [0; COUNT];
     let (mut found, mut row) = (0, 0);
-    while row < VARIABLES.len() {
-        if row_of_derivative(VARIABLES[row].name).is_some() {
+    while row < table.len() {
+        if row_of_derivative(table, table[row].name).is_some() {
             states[found] = row as u32;
             found += 1;
         }
         row += 1;
     }
-    assert!(found == ORDER, "another number of states");
+    assert!(found == COUNT, "another number of states");
     states
 }
 
-const fn derivatives() -> [u32; ORDER] {
-    let mut derivatives = [0; ORDER];
+/// Value references of the derivatives of the continuous states, in the order of
+/// the states.
+#[must_use]
+pub const fn derivatives<M: Model, const COUNT: usize>(table: &[Variable<M>]) -> [u32; COUNT] {
+    let states: [u32; COUNT] = states(table);
+    let mut derivatives = [0; COUNT];
     let mut i = 0;
-    while i < ORDER {
-        if let Some(row) = row_of_derivative(VARIABLES[STATES[i] as usize].name) {
+    while i < COUNT {
+        if let Some(row) = row_of_derivative(table, table[states[i] as usize].name) {
             derivatives[i] = row as u32;
         }
         i += 1;
@@ -183,10 +186,10 @@ const fn derivatives() -> [u32; ORDER] {
     derivatives
 }
 
-const fn row_of_derivative(name: &str) -> Option<usize> {
+const fn row_of_derivative<M: Model>(table: &[Variable<M>], name: &str) -> Option<usize> {
     let mut row = 0;
-    while row < VARIABLES.len() {
-        if let Some(state) = VARIABLES[row].derivative_of
+    while row < table.len() {
+        if let Some(state) = table[row].derivative_of
             && same(state, name)
         {
             return Some(row);
@@ -196,16 +199,22 @@ const fn row_of_derivative(name: &str) -> Option<usize> {
     None
 }
 
-/// Value reference of a variable, by its name.
+/// Value reference of a variable of a model, by its name.
 #[must_use]
-pub fn value_reference(name: &str) -> Option<u32> {
-    VARIABLES
+pub fn value_reference<M: Model>(name: &str) -> Option<u32> {
+    M::VARIABLES
         .iter()
         .position(|variable| variable.name == name)
         .map(|row| row as u32)
 }
 
-impl Variable {
+impl<M: Model> Variable<M> {
+    /// Whether the host prescribes it as a function of time.
+    #[must_use]
+    pub const fn is_input(&self) -> bool {
+        matches!(self.access, Access::Input { .. })
+    }
+
     /// Why `value` may not be set, in words, if it may not.
     ///
     /// # Errors
@@ -233,28 +242,31 @@ impl Variable {
     }
 }
 
-impl Scene {
-    /// The scene in which each variable has its start value.
-    #[must_use]
-    pub fn at_start() -> Scene {
-        let mut scene = Scene::BLANK;
-        for variable in &VARIABLES {
-            let Some(start) = variable.start else {
-                continue;
-            };
-            match variable.access {
-                Access::Input { of, .. } => *of(&mut scene) = Polynomial::constant(start),
-                Access::Setting { set, .. } => set(&mut scene, start),
-                Access::Result { .. } => {}
-            }
+/// `blank` with each variable of the table of a model at its start value.
+#[must_use]
+pub fn at_start<M: Model>(blank: M::Scene) -> M::Scene {
+    let mut scene = blank;
+    for variable in M::VARIABLES {
+        let Some(start) = variable.start else {
+            continue;
+        };
+        match variable.access {
+            Access::Input { of, .. } => *of(&mut scene) = Polynomial::constant(start),
+            Access::Setting { set, .. } => set(&mut scene, start),
+            Access::Result { .. } => {}
         }
-        scene
     }
+    scene
 }
 
-/// A table whose rows have different names and starts inside their limits; the
-/// compiler refuses any other.
-const fn checked<const COUNT: usize>(rows: [Variable; COUNT]) -> [Variable; COUNT] {
+/// A table whose rows have different names and starts inside their limits.
+///
+/// # Panics
+/// If it has not; at compile time.
+#[must_use]
+pub const fn checked<M: Model, const COUNT: usize>(
+    rows: [Variable<M>; COUNT],
+) -> [Variable<M>; COUNT] {
     let mut i = 0;
     while i < COUNT {
         let mut k = 0;

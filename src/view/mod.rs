@@ -3,53 +3,18 @@
 
 mod quantities;
 
-pub use quantities::{Direction, HIGHEST_ORDER, Moment, Quantities, Series};
-
-use serde::{Deserialize, Serialize};
+pub use quantities::{Quantities, Sample};
 
 use crate::actuator::motion::{self, Load};
 use crate::actuator::{Coefficients, Drive};
+use crate::model::{AtLimit, Place, View};
+use crate::nondimensional::Nondimensional;
 use crate::pull_in::{self, Threshold};
-use crate::scene::{OnPullIn, Scene};
 use crate::solver::State;
-use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
-use crate::solver::jet::Dual;
 use crate::solver::limits::Limit;
-use crate::solver::trajectory::Trajectory;
 
-/// The moment at which the motion reached a limit of the stretch.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Collapse {
-    /// The limit.
-    pub limit: Limit,
-    /// Time of the model.
-    pub time: Double,
-}
-
-/// Where the state of the motion is known from.
-#[derive(Clone, Copy, Debug)]
-pub enum Place<'a> {
-    /// It is this one: at the start, or where the host integrates.
-    At(State),
-    /// The present of this trajectory.
-    On(&'a Trajectory),
-}
-
-/// The actuator at the present time.
-#[derive(Clone, Copy)]
-pub struct View<'a> {
-    /// What the host has set.
-    pub scene: &'a Scene,
-    /// The state of the motion.
-    pub place: Place<'a>,
-    /// Time of the model.
-    pub time: &'a Double,
-    /// Whether and when the motion came to a limit.
-    pub collapse: Option<&'a Collapse>,
-}
-
-impl Quantities<f64> for View<'_> {
+impl Quantities<f64> for View<'_, Nondimensional> {
     fn stretch(&self) -> f64 {
         match (self.held(), self.place) {
             (Some(Limit::Lower), _) => self.scene.limits.lower,
@@ -84,13 +49,13 @@ impl Quantities<f64> for View<'_> {
     }
 }
 
-impl View<'_> {
+impl View<'_, Nondimensional> {
     /// The limit at which the actuator is held. Where the simulation ends
     /// instead, the state on arrival remains.
-    fn held(&self) -> Option<Limit> {
+    pub(crate) fn held(&self) -> Option<Limit> {
         match self.scene.on_pull_in {
-            OnPullIn::Hold => self.collapse.map(|collapse| collapse.limit),
-            OnPullIn::Terminate => None,
+            AtLimit::Hold => self.collapse.map(|collapse| collapse.limit),
+            AtLimit::Terminate => None,
         }
     }
 
@@ -110,19 +75,6 @@ impl View<'_> {
             position: self.stretch(),
             rate: self.stretch_rate(),
         }
-    }
-
-    /// The present as it changes in a direction.
-    #[must_use]
-    pub fn along(&self, direction: &Direction) -> Moment<Dual> {
-        Moment::along(self.scene, *self.time, self.state(), self.held(), direction)
-    }
-
-    /// The motion from now on, as power series in the time that are right up to
-    /// the derivatives of `order`, at most [`HIGHEST_ORDER`].
-    #[must_use]
-    pub fn from_now_on(&self, order: usize) -> Moment<Series> {
-        Moment::from_now_on(self.scene, *self.time, self.state(), self.held(), order)
     }
 
     /// The voltage φ that the host drives, without the built-in drive.

@@ -3,19 +3,14 @@
 
 use crate::actuator::Coefficients;
 use crate::actuator::motion::{self, Load};
+use crate::model::Direction;
+use crate::nondimensional::Nondimensional;
 use crate::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
-use crate::solver::jet::{Dual, Jet};
+use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::limits::Limit;
 use crate::solver::number::Number;
-
-/// Highest order of the derivatives with respect to time.
-pub const HIGHEST_ORDER: usize = 5;
-
-/// A quantity as a power series in the time from now on, right up to
-/// [`HIGHEST_ORDER`] even for the second derivative of the stretch.
-pub type Series = Jet<{ HIGHEST_ORDER + 3 }>;
 
 /// The quantities that follow from the stretch, its derivatives and the voltage.
 pub trait Quantities<N: Number> {
@@ -52,14 +47,14 @@ pub trait Quantities<N: Number> {
 
 /// The actuator at one moment, as numbers that carry their derivatives along.
 #[derive(Clone, Copy, Debug)]
-pub struct Moment<N> {
+pub struct Sample<N> {
     stretch: N,
     rate: N,
     acceleration: N,
     voltage: N,
 }
 
-impl<N: Number> Quantities<N> for Moment<N> {
+impl<N: Number> Quantities<N> for Sample<N> {
     fn stretch(&self) -> N {
         self.stretch
     }
@@ -77,26 +72,16 @@ impl<N: Number> Quantities<N> for Moment<N> {
     }
 }
 
-/// A direction in which the scene and the state may change: each number is the
-/// rate of change of the one in its place.
-#[derive(Clone, Copy, Debug)]
-pub struct Direction {
-    /// Changes of what the host sets.
-    pub scene: Scene,
-    /// Change of the present state.
-    pub state: State,
-}
-
-impl Moment<Dual> {
+impl Sample<Dual> {
     /// The moment at which a scene is in this state, `held` at a limit or not,
     /// as it changes in a direction.
-    pub(super) fn along(
+    pub(crate) fn along(
         scene: &Scene,
         time: Double,
         state: State,
         held: Option<Limit>,
-        direction: &Direction,
-    ) -> Moment<Dual> {
+        direction: &Direction<Nondimensional>,
+    ) -> Sample<Dual> {
         let (voltage, prestress) = scene.drive.along(&direction.scene.drive, time);
         if let Some(limit) = held {
             let change = direction.scene.limits;
@@ -104,7 +89,7 @@ impl Moment<Dual> {
                 Limit::Lower => change.lower,
                 Limit::Upper => change.upper,
             };
-            return Moment::held(Dual::new(state.position, change), voltage);
+            return Sample::held(Dual::new(state.position, change), voltage);
         }
         let stretch = Dual::new(state.position, direction.state.position);
         let rate = Dual::new(state.rate, direction.state.rate);
@@ -113,7 +98,7 @@ impl Moment<Dual> {
             voltage_squared: voltage * voltage,
             prestress,
         };
-        Moment {
+        Sample {
             stretch,
             rate,
             acceleration: motion::acceleration(
@@ -127,38 +112,38 @@ impl Moment<Dual> {
     }
 }
 
-impl Moment<Series> {
+impl Sample<TimeSeries> {
     /// The motion of a scene from this state on, `held` at a limit or not, as
     /// power series in the time, right up to the derivatives of `order`.
-    pub(super) fn from_now_on(
+    pub(crate) fn from_now_on(
         scene: &Scene,
         time: Double,
         state: State,
         held: Option<Limit>,
         order: usize,
-    ) -> Moment<Series> {
+    ) -> Sample<TimeSeries> {
         let drive = scene.drive.at(&time);
-        let offset = Series::variable();
+        let offset = TimeSeries::variable();
         let voltage = drive.voltage(offset);
-        let mut stretch = Series::constant(state.position);
+        let mut stretch = TimeSeries::constant(state.position);
         if held.is_some() {
-            return Moment::held(stretch, voltage);
+            return Sample::held(stretch, voltage);
         }
         let load = Load {
             voltage_squared: voltage * voltage,
             prestress: drive.prestress(offset),
         };
         let coefficients = Coefficients::fold(&scene.parameters).same(offset);
-        let mut rate = Series::constant(state.rate);
+        let mut rate = TimeSeries::constant(state.rate);
         stretch.term[1] = state.rate;
         // The equation of motion gives one more term of the stretch at a time.
-        let mut acceleration = Series::constant(0.0);
+        let mut acceleration = TimeSeries::constant(0.0);
         for k in 0..=order.min(HIGHEST_ORDER) {
             acceleration = motion::acceleration(&coefficients, load, stretch, rate);
             rate.term[k + 1] = acceleration.term[k] / (k + 1) as f64;
             stretch.term[k + 2] = rate.term[k + 1] / (k + 2) as f64;
         }
-        Moment {
+        Sample {
             stretch,
             rate,
             acceleration,
@@ -167,10 +152,10 @@ impl Moment<Series> {
     }
 }
 
-impl<N: Number> Moment<N> {
-    fn held(stretch: N, voltage: N) -> Moment<N> {
+impl<N: Number> Sample<N> {
+    fn held(stretch: N, voltage: N) -> Sample<N> {
         let nothing = stretch.same(0.0);
-        Moment {
+        Sample {
             stretch,
             rate: nothing,
             acceleration: nothing,

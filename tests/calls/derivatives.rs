@@ -190,7 +190,7 @@ fn during_initialization_start_values_are_known_and_states_are_not() {
 /// The declared dependencies are those that there are, no more and no fewer.
 #[test]
 fn dependencies_are_those_declared() {
-    use dielectric_elastomer_actuator::variables::{Access, STATES};
+    use dielectric_elastomer_actuator::variables::Access;
     for (phase, state_is_known) in [("initialization", false), ("stepping", true)] {
         let host = started(1.5, phase);
         for unknown in &VARIABLES {
@@ -209,7 +209,7 @@ fn dependencies_are_those_declared() {
             };
             for (place, known) in VARIABLES.iter().enumerate() {
                 let input = matches!(known.access, Access::Input { .. });
-                let state = STATES.contains(&(place as u32));
+                let state = Nondimensional::STATES.contains(&(place as u32));
                 let real = known.start.is_some()
                     && known.name != "on_pull_in"
                     && known.name != "record_extremes";

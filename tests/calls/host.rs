@@ -4,9 +4,10 @@ use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::null;
 use std::sync::Mutex;
 
-use dielectric_elastomer_actuator::abi::*;
-use dielectric_elastomer_actuator::description::GUID;
-use dielectric_elastomer_actuator::variables::value_reference;
+use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::Nondimensional;
+use dielectric_elastomer_actuator::nondimensional::value_reference;
 use fmi::fmi2::binding::*;
 
 pub const OK: fmi2Status = fmi2Status_fmi2OK;
@@ -91,7 +92,7 @@ impl Host {
     }
 
     pub fn of(kind: fmi2Type) -> Host {
-        let guid = CString::new(GUID).expect("no NUL");
+        let guid = CString::new(Nondimensional::GUID).expect("no NUL");
         let host = Host::with(c"actuator".as_ptr(), kind, guid.as_ptr());
         assert!(!host.component.is_null());
         host

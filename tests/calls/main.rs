@@ -19,9 +19,10 @@ mod table;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
-use dielectric_elastomer_actuator::abi::*;
-use dielectric_elastomer_actuator::description::GUID;
-use dielectric_elastomer_actuator::variables::VARIABLES;
+use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::Nondimensional;
+use dielectric_elastomer_actuator::nondimensional::VARIABLES;
 use fmi::fmi2::binding::*;
 use host::{ERROR, Host, OK, reference};
 use table::{KINDS, TABLE};

@@ -62,7 +62,7 @@ fn everything_can_be_read_at_once_and_after_setting_without_a_step() {
     for phase in ["initialization", "stepping"] {
         let host = Host::in_phase(phase);
         assert_eq!(host.set("phi", 0.3), OK);
-        let real = |row: &&dielectric_elastomer_actuator::variables::Variable| {
+        let real = |row: &&dielectric_elastomer_actuator::variables::Variable<Nondimensional>| {
             matches!(
                 row.kind,
                 dielectric_elastomer_actuator::variables::Kind::Real { .. }
@@ -129,7 +129,7 @@ fn an_instance_may_be_freed_in_any_phase_and_reset_after_termination() {
 /// Names with blanks or paths; resources by any URI, or by none.
 #[test]
 fn names_and_locations_may_be_strange() {
-    let guid = CString::new(GUID).expect("no NUL");
+    let guid = CString::new(Nondimensional::GUID).expect("no NUL");
     for name in [
         c"my actuator",
         c"/a/b c/d.fmu",
@@ -151,7 +151,7 @@ fn names_and_locations_may_be_strange() {
 #[test]
 fn instances_in_several_threads_do_not_disturb_each_other() {
     fn may_move<T: Send>() {}
-    may_move::<dielectric_elastomer_actuator::slave::Instance>();
+    may_move::<dielectric_elastomer_actuator::nondimensional::Instance>();
     let run = || {
         let host = Host::in_phase("stepping");
         assert_eq!(host.set("phi", 0.6), OK);

@@ -92,7 +92,7 @@ fn null_pointers_are_refused_everywhere() {
 
 #[test]
 fn instances_are_refused_with_a_reason() {
-    let guid = CString::new(GUID).expect("no NUL");
+    let guid = CString::new(Nondimensional::GUID).expect("no NUL");
     let co_simulation = fmi2Type_fmi2CoSimulation;
     let cases = [
         (

@@ -4,8 +4,9 @@
 
 use std::ptr::{null, null_mut};
 
-use dielectric_elastomer_actuator::abi::*;
-use dielectric_elastomer_actuator::variables::{Access, Kind, VARIABLES};
+use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::nondimensional::VARIABLES;
+use dielectric_elastomer_actuator::variables::{Access, Kind};
 use fmi::fmi2::binding::*;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,11 @@
 //! Motions that go far: to infinity in finite time, and onto far orbits.
 
+use dielectric_elastomer_actuator::nondimensional::Instance;
+use dielectric_elastomer_actuator::nondimensional::value_reference;
 use dielectric_elastomer_actuator::pull_in;
-use dielectric_elastomer_actuator::slave::{Instance, Type};
+use dielectric_elastomer_actuator::slave::Type;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
-use dielectric_elastomer_actuator::variables::value_reference;
 
 use super::*;
 

@@ -3,23 +3,24 @@
 
 use std::time::{Duration, Instant};
 
-use dielectric_elastomer_actuator::slave::{Instance, Severity, Type};
-use dielectric_elastomer_actuator::variables::{
-    Access, Causality, Kind, VARIABLES, Variability, Variable, value_reference,
+use dielectric_elastomer_actuator::nondimensional::{
+    Instance, Nondimensional, VARIABLES, value_reference,
 };
+use dielectric_elastomer_actuator::slave::{Severity, Type};
+use dielectric_elastomer_actuator::variables::{Access, Causality, Kind, Variability, Variable};
 
 use super::*;
 
-fn type_of(variable: &Variable) -> Type {
+fn type_of(variable: &Variable<Nondimensional>) -> Type {
     match variable.kind {
         Kind::Real { .. } => Type::Real,
         Kind::Boolean => Type::Boolean,
-        Kind::Enumeration => Type::Integer,
+        Kind::Enumeration(_) => Type::Integer,
     }
 }
 
 /// A legal value: a limit, the start, a denormal, next to nothing, or any size.
-fn value(random: &mut Random, variable: &Variable) -> f64 {
+fn value(random: &mut Random, variable: &Variable<Nondimensional>) -> f64 {
     let Kind::Real { min, max, .. } = variable.kind else {
         return random.of(&[1.0, 2.0]);
     };

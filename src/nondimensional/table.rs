@@ -1,32 +1,45 @@
-//! The rows of the table.
+//! The variables of the nondimensional actuator.
 
-use super::rows::{
-    UNDECLARED, depends, formula, input, parameter, positive, real, result, unlimited, value,
-};
-use super::{Causality, Kind, Unit, Variability, Variable, checked};
-use crate::scene::OnPullIn;
+use super::Nondimensional;
+use crate::model::AtLimit;
+use crate::variables::rows::{UNDECLARED, depends, formula, positive, real, unlimited, value};
+use crate::variables::{Causality, Enumeration, Kind, Variability, Variable, checked, units};
 use crate::view::Quantities;
 
 use Causality::{Local, Output};
 use Variability::{Fixed, Tunable};
 
+/// What happens at a limit of the stretch.
+pub static ON_PULL_IN: Enumeration = Enumeration {
+    name: "OnPullIn",
+    items: &[
+        ("hold", "the actuator stays at the limit and steps go on"),
+        (
+            "terminate",
+            "the step ends there and the host is asked to terminate",
+        ),
+    ],
+};
+
+type Row = Variable<Nondimensional>;
+
 /// All variables, in the order of their value references.
-pub static VARIABLES: [Variable; COUNT] = checked([
-    input(
+pub static VARIABLES: [Row; COUNT] = checked([
+    Row::input(
         "phi",
         "nondimensional voltage, phi*sqrt(eps/mu)/H",
         real(-1e3, 1e3, 1.0),
         |view| view.voltage(),
         |scene| &mut scene.drive.voltage,
     ),
-    input(
+    Row::input(
         "S",
         "nondimensional prestress, P/(mu*H*L)",
         real(-1e3, 1e3, 1.0),
         |view| view.prestress(),
         |scene| &mut scene.drive.prestress,
     ),
-    parameter(
+    Row::parameter(
         "c",
         "squared ratio of side to thickness, L^2/H^2",
         Tunable,
@@ -35,7 +48,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.parameters.aspect,
         |scene, value| scene.parameters.aspect = value,
     ),
-    parameter(
+    Row::parameter(
         "gamma_s",
         "surface energy density over mu*H",
         Tunable,
@@ -44,7 +57,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.parameters.surface_energy,
         |scene, value| scene.parameters.surface_energy = value,
     ),
-    parameter(
+    Row::parameter(
         "tau_s",
         "surface tension over mu*H",
         Tunable,
@@ -53,7 +66,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.parameters.surface_tension,
         |scene, value| scene.parameters.surface_tension = value,
     ),
-    parameter(
+    Row::parameter(
         "E_s",
         "surface elasticity over mu*H",
         Tunable,
@@ -62,7 +75,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.parameters.surface_elasticity,
         |scene, value| scene.parameters.surface_elasticity = value,
     ),
-    parameter(
+    Row::parameter(
         "lambda_start",
         "stretch at the start time",
         Fixed,
@@ -71,7 +84,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.start.position,
         |scene, value| scene.start.position = value,
     ),
-    parameter(
+    Row::parameter(
         "lambda_dot_start",
         "stretch rate at the start time",
         Fixed,
@@ -80,7 +93,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.start.rate,
         |scene, value| scene.start.rate = value,
     ),
-    parameter(
+    Row::parameter(
         "phi_ac",
         "amplitude of the built-in voltage phi_ac*sin(omega_ac*t + phase_ac), added to phi",
         Tunable,
@@ -89,7 +102,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.drive.harmonic.amplitude,
         |scene, value| scene.drive.harmonic.amplitude = value,
     ),
-    parameter(
+    Row::parameter(
         "omega_ac",
         "angular frequency of the built-in voltage, radians per unit of time",
         Tunable,
@@ -98,8 +111,8 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.drive.harmonic.frequency,
         |scene, value| scene.drive.harmonic.frequency = value,
     )
-    .in_unit(Unit::AngularFrequency),
-    parameter(
+    .in_unit(&units::ANGULAR_FREQUENCY),
+    Row::parameter(
         "phase_ac",
         "phase of the built-in voltage at t = 0, radians",
         Tunable,
@@ -108,8 +121,8 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.drive.harmonic.phase,
         |scene, value| scene.drive.harmonic.phase = value,
     )
-    .in_unit(Unit::Angle),
-    parameter(
+    .in_unit(&units::ANGLE),
+    Row::parameter(
         "lambda_min",
         "stretch at which the contracting actuator has collapsed",
         Fixed,
@@ -118,7 +131,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.limits.lower,
         |scene, value| scene.limits.lower = value,
     ),
-    parameter(
+    Row::parameter(
         "lambda_max",
         "stretch at which the expanding actuator has been pulled in",
         Fixed,
@@ -127,25 +140,25 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| scene.limits.upper,
         |scene, value| scene.limits.upper = value,
     ),
-    parameter(
+    Row::parameter(
         "on_pull_in",
         "what happens at lambda_min or lambda_max",
         Fixed,
-        Kind::Enumeration,
+        Kind::Enumeration(&ON_PULL_IN),
         1.0,
         |scene| match scene.on_pull_in {
-            OnPullIn::Hold => 1.0,
-            OnPullIn::Terminate => 2.0,
+            AtLimit::Hold => 1.0,
+            AtLimit::Terminate => 2.0,
         },
         |scene, value| {
             scene.on_pull_in = if value == 1.0 {
-                OnPullIn::Hold
+                AtLimit::Hold
             } else {
-                OnPullIn::Terminate
+                AtLimit::Terminate
             };
         },
     ),
-    result(
+    Row::result(
         "lambda",
         "in-plane stretch",
         Output,
@@ -153,7 +166,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         formula!(stretch),
         depends(&["lambda"], &["lambda_start"]),
     ),
-    result(
+    Row::result(
         "lambda3",
         "thickness stretch, 1/lambda^2",
         Output,
@@ -161,7 +174,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         formula!(thickness_stretch),
         depends(&["lambda"], &["lambda_start"]),
     ),
-    result(
+    Row::result(
         "pulled_in",
         "whether the stretch has reached lambda_min or lambda_max",
         Output,
@@ -169,7 +182,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| f64::from(u8::from(view.collapse.is_some()))),
         depends(&[], &[]),
     ),
-    result(
+    Row::result(
         "lambda_dot",
         "rate of lambda",
         Local,
@@ -178,7 +191,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         depends(&["lambda_dot"], &["lambda_dot_start"]),
     )
     .derivative_of("lambda"),
-    result(
+    Row::result(
         "lambda3_dot",
         "rate of lambda3",
         Local,
@@ -189,7 +202,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
             &["lambda_start", "lambda_dot_start"],
         ),
     ),
-    result(
+    Row::result(
         "lambda_ddot",
         "second derivative of lambda by the equation of motion",
         Local,
@@ -213,7 +226,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         ),
     )
     .derivative_of("lambda_dot"),
-    result(
+    Row::result(
         "phi_total",
         "phi with the built-in voltage added",
         Local,
@@ -221,7 +234,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         formula!(total_voltage),
         depends(&["phi"], &["phi", "phi_ac", "omega_ac", "phase_ac"]),
     ),
-    result(
+    Row::result(
         "electric_field",
         "true electric field, phi_total*lambda^2",
         Local,
@@ -232,7 +245,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
             &["phi", "lambda_start", "phi_ac", "omega_ac", "phase_ac"],
         ),
     ),
-    result(
+    Row::result(
         "hamiltonian",
         "Hamiltonian, constant while phi and S are; 0 at rest at lambda = 1",
         Local,
@@ -240,7 +253,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.energy()),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "phi_pull_in",
         "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf where there is none",
         Local,
@@ -251,7 +264,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         }),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "lambda3_pull_in",
         "thickness stretch at the dynamic pull-in voltage; 0 where there is none",
         Local,
@@ -262,7 +275,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         }),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "phi_pull_in_static",
         "static pull-in voltage for the present S; +inf where there is none",
         Local,
@@ -270,7 +283,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage)),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "lambda3_pull_in_static",
         "thickness stretch at the static pull-in voltage; 0 where there is none",
         Local,
@@ -278,7 +291,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.static_threshold().map_or(0.0, |t| t.thickness_stretch)),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "pull_in_margin",
         "by how much the voltage may grow until dynamic pull-in; negative beyond, +inf where there is none",
         Local,
@@ -286,7 +299,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.pull_in_margin()),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "pull_in_time",
         "time at which pulled_in became true; +inf until then",
         Local,
@@ -294,7 +307,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.collapse.map_or(f64::INFINITY, |c| c.time.value())),
         UNDECLARED,
     ),
-    parameter(
+    Row::parameter(
         "record_extremes",
         "whether the extremes of lambda and lambda3 are recorded",
         Fixed,
@@ -303,7 +316,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         |scene| f64::from(u8::from(scene.record_extremes)),
         |scene, value| scene.record_extremes = value != 0.0,
     ),
-    result(
+    Row::result(
         "lambda_lowest",
         "smallest lambda since the start time; 0 where extremes are not recorded",
         Local,
@@ -311,7 +324,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.extremes().map_or(0.0, |e| e.lowest)),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "lambda_highest",
         "largest lambda since the start time; 0 where extremes are not recorded",
         Local,
@@ -319,7 +332,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         value(|view| view.extremes().map_or(0.0, |e| e.highest)),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "lambda3_lowest",
         "smallest lambda3 since the start time; 0 where extremes are not recorded",
         Local,
@@ -330,7 +343,7 @@ pub static VARIABLES: [Variable; COUNT] = checked([
         }),
         UNDECLARED,
     ),
-    result(
+    Row::result(
         "lambda3_highest",
         "largest lambda3 since the start time; 0 where extremes are not recorded",
         Local,

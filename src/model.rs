@@ -1,0 +1,231 @@
+//! What a model says, so that an instance, its description and its C functions can be made of it.
+//!
+//! A model is a table of variables and the physics behind it. Everything that concerns FMI is
+//! written once, over this trait: adding a model adds nothing there.
+
+use std::fmt::Debug;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use crate::solver::double::Double;
+use crate::solver::jet::{Dual, TimeSeries};
+use crate::solver::number::Number;
+use crate::solver::trajectory::{Failure, Progress};
+use crate::variables::Variable;
+
+/// A model: a marker type that names its table and its physics.
+pub trait Model: Copy + Debug + PartialEq + 'static {
+    /// The name of the FMU and of the binary in it.
+    const IDENTIFIER: &'static str;
+
+    /// What it is, in one line.
+    const DESCRIPTION: &'static str;
+
+    /// A hash of the description, which ties the binary to it.
+    const GUID: &'static str;
+
+    /// The variables; the position of a row is its value reference.
+    const VARIABLES: &'static [Variable<Self>];
+
+    /// Value references of the continuous states.
+    const STATES: &'static [u32];
+
+    /// Value references of their derivatives, in the same order.
+    const DERIVATIVES: &'static [u32];
+
+    /// The number of event indicators.
+    const INDICATOR_COUNT: usize;
+
+    /// The experiment that a host proposes to its user.
+    const EXPERIMENT: Experiment;
+
+    /// Everything that a host sets.
+    type Scene: Clone + Debug + PartialEq + Serialize + DeserializeOwned;
+
+    /// The continuous states.
+    type State: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
+
+    /// The motion, where the model integrates it itself.
+    type Motion: Motion<Self>;
+
+    /// Where a motion ends.
+    type Limit: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
+
+    /// The quantities that can be differentiated, as numbers that carry derivatives along.
+    type Sample<N: Number>;
+
+    /// A scene with every number 0, to be filled in.
+    fn blank() -> Self::Scene;
+
+    /// A scene with each variable at its start value.
+    #[must_use]
+    fn at_start() -> Self::Scene {
+        crate::variables::at_start::<Self>(Self::blank())
+    }
+
+    /// Whether the inputs are polynomials in finite numbers.
+    fn inputs_are_finite(scene: &Self::Scene) -> bool;
+
+    /// Checks, at the end of initialization, what no single variable can tell.
+    ///
+    /// # Errors
+    /// A message that says which value does not go with which other.
+    fn check_start(scene: &Self::Scene) -> Result<(), String>;
+
+    /// The state at the start time.
+    fn start(scene: &Self::Scene) -> Self::State;
+
+    /// Counts the time of the inputs from `time` on; the inputs stay the same functions of time.
+    fn rebase_inputs(scene: &mut Self::Scene, time: Double);
+
+    /// Makes `time` the moment from which the time of the inputs counts; their numbers are kept.
+    fn begin_inputs(scene: &mut Self::Scene, time: Double);
+
+    /// The moment from which the time of the inputs counts.
+    fn inputs_since(scene: &Self::Scene) -> &Double;
+
+    /// What happens at a limit.
+    fn at_limit(scene: &Self::Scene, limit: Self::Limit) -> AtLimit;
+
+    /// What has happened at a limit, in words, the time included.
+    fn describe(scene: &Self::Scene, limit: Self::Limit, time: f64) -> String;
+
+    /// The limit that lies less than `tolerance`, relative to it, before a state that moves
+    /// towards it, or behind the state.
+    fn limit_reached(
+        scene: &Self::Scene,
+        state: &Self::State,
+        tolerance: f64,
+    ) -> Option<Self::Limit>;
+
+    /// Writes the event indicators, as many as [`Model::INDICATOR_COUNT`].
+    fn indicators(view: &View<Self>, indicators: &mut [f64]);
+
+    /// Whether the numbers can be those of a state.
+    fn is_finite(state: &Self::State) -> bool;
+
+    /// The component of a state that is the `place`-th of [`Model::STATES`].
+    fn component(state: &mut Self::State, place: usize) -> Option<&mut f64>;
+
+    /// Why there is no motion from the present state, in words, if there is none: the host's
+    /// integrator has tried a state that is too far out.
+    ///
+    /// # Errors
+    /// A message that names the value.
+    fn check_state(view: &View<Self>) -> Result<(), String>;
+
+    /// The present state.
+    fn state(view: &View<Self>) -> Self::State;
+
+    /// The present as it changes in a direction.
+    fn along(view: &View<Self>, direction: &Direction<Self>) -> Self::Sample<Dual>;
+
+    /// The motion from now on, as power series in time that are right up to the derivatives of
+    /// `order`.
+    fn from_now_on(view: &View<Self>, order: usize) -> Self::Sample<TimeSeries>;
+}
+
+/// A motion that the model integrates, from communication point to communication point.
+pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
+    /// The motion of a scene from its start on.
+    fn begin(scene: &M::Scene, time: Double, tolerance: f64) -> Self;
+
+    /// Follows the motion for the time `step` > 0. The scene is the same as in the calls before,
+    /// back to the last [`Motion::restart`].
+    ///
+    /// # Errors
+    /// [`Failure`] where the integration cannot go on; the motion then stands where it ended.
+    fn advance(&mut self, scene: &M::Scene, step: f64) -> Result<Progress<M::Limit>, Failure>;
+
+    /// Starts anew from the present state: the scene has changed.
+    fn restart(&mut self);
+
+    /// Lets time pass in which nothing moves.
+    fn wait(&mut self, time: Double);
+
+    /// The present time of the model.
+    fn time(&self) -> &Double;
+
+    /// Whether the numbers fit together as those of a motion of the scene: to be checked where
+    /// they do not come from this process.
+    fn is_valid(&self, scene: &M::Scene, tolerance: f64) -> bool;
+
+    /// Where the motion is, in words, for messages.
+    fn whereabouts(&self) -> String;
+}
+
+/// What a host does with a model at first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Experiment {
+    /// Stop time.
+    pub stop_time: f64,
+    /// Communication step.
+    pub step_size: f64,
+}
+
+/// What happens where a motion reaches a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum AtLimit {
+    /// It stays at the limit, and communication steps go on.
+    Hold,
+    /// The host is asked to end the simulation.
+    Terminate,
+}
+
+/// The moment at which a motion reached a limit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Collapse<L> {
+    /// The limit.
+    pub limit: L,
+    /// Time of the model.
+    pub time: Double,
+}
+
+/// Where the state of the motion is known from.
+pub enum Place<'a, M: Model> {
+    /// It is this one: at the start, or where the host integrates.
+    At(M::State),
+    /// The present of this motion.
+    On(&'a M::Motion),
+}
+
+/// What a host can read at the present communication point. Each quantity is computed when it is
+/// read, and only then.
+pub struct View<'a, M: Model> {
+    /// What the host has set.
+    pub scene: &'a M::Scene,
+    /// The state of the motion.
+    pub place: Place<'a, M>,
+    /// Time of the model.
+    pub time: &'a Double,
+    /// Whether and when the motion came to a limit.
+    pub collapse: Option<&'a Collapse<M::Limit>>,
+}
+
+// Derived, these would ask the motion to be copied too.
+impl<M: Model> Clone for Place<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Model> Copy for Place<'_, M> {}
+
+impl<M: Model> Clone for View<'_, M> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<M: Model> Copy for View<'_, M> {}
+
+/// A direction in which the scene and the state may change: each number is the rate of change of
+/// the one in its place.
+#[derive(Clone, Debug)]
+pub struct Direction<M: Model> {
+    /// Changes of what the host sets.
+    pub scene: M::Scene,
+    /// Change of the present state.
+    pub state: M::State,
+}

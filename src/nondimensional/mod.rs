@@ -1,0 +1,217 @@
+//! The nondimensional actuator of the paper as a [`Model`]: its table of variables and the
+//! physics behind it.
+
+mod table;
+
+pub use table::{ON_PULL_IN, VARIABLES};
+
+use serde::{Deserialize, Serialize};
+
+use crate::description::guid;
+use crate::model::{AtLimit, Direction, Experiment, Model, Motion, View};
+use crate::scene::Scene;
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::jet::{Dual, TimeSeries};
+use crate::solver::limits::Limit;
+use crate::solver::number::Number;
+use crate::solver::trajectory::{Failure, Progress, Trajectory};
+use crate::variables::{self, Variable};
+use crate::view::{Quantities, Sample};
+
+/// The marker of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Nondimensional;
+
+impl Model for Nondimensional {
+    const IDENTIFIER: &'static str = "DielectricElastomerActuator";
+    const DESCRIPTION: &'static str = env!("CARGO_PKG_DESCRIPTION");
+    const GUID: &'static str = guid::text(&GUID);
+    const VARIABLES: &'static [Variable<Nondimensional>] = &VARIABLES;
+    const STATES: &'static [u32] = &variables::states::<Nondimensional, 2>(&VARIABLES);
+    const DERIVATIVES: &'static [u32] = &variables::derivatives::<Nondimensional, 2>(&VARIABLES);
+    /// λ − λ_min and λ_max − λ.
+    const INDICATOR_COUNT: usize = 2;
+    const EXPERIMENT: Experiment = Experiment {
+        stop_time: 100.0,
+        step_size: 0.1,
+    };
+
+    type Scene = Scene;
+    type State = State;
+    type Motion = Trajectory;
+    type Limit = Limit;
+    type Sample<N: Number> = Sample<N>;
+
+    fn blank() -> Scene {
+        Scene::BLANK
+    }
+
+    fn inputs_are_finite(scene: &Scene) -> bool {
+        scene.drive.is_finite()
+    }
+
+    fn check_start(scene: &Scene) -> Result<(), String> {
+        let start = scene.start.position;
+        let limits = scene.limits;
+        if limits.lower < start && start < limits.upper {
+            return Ok(());
+        }
+        Err(format!(
+            "lambda_start = {start} does not lie between lambda_min = {} and lambda_max = {}; \
+             set it, or the limits, so that it does",
+            limits.lower, limits.upper
+        ))
+    }
+
+    fn start(scene: &Scene) -> State {
+        scene.start
+    }
+
+    #[inline]
+    fn rebase_inputs(scene: &mut Scene, time: Double) {
+        scene.drive.rebase(time);
+    }
+
+    fn begin_inputs(scene: &mut Scene, time: Double) {
+        scene.drive.since = time;
+    }
+
+    fn inputs_since(scene: &Scene) -> &Double {
+        &scene.drive.since
+    }
+
+    fn at_limit(scene: &Scene, _limit: Limit) -> AtLimit {
+        scene.on_pull_in
+    }
+
+    fn describe(scene: &Scene, limit: Limit, time: f64) -> String {
+        let Scene { limits, .. } = scene;
+        match limit {
+            Limit::Upper => format!(
+                "the actuator was pulled in: at time {time} its stretch reached lambda_max = {}",
+                limits.upper
+            ),
+            Limit::Lower => format!(
+                "the actuator collapsed: at time {time} its stretch came down to lambda_min = {}",
+                limits.lower
+            ),
+        }
+    }
+
+    fn limit_reached(scene: &Scene, state: &State, tolerance: f64) -> Option<Limit> {
+        let &State { position, rate } = state;
+        let limits = scene.limits;
+        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
+        if position >= limits.upper * (1.0 - margin(rate)) {
+            Some(Limit::Upper)
+        } else if position <= limits.lower * (1.0 + margin(-rate)) {
+            Some(Limit::Lower)
+        } else {
+            None
+        }
+    }
+
+    /// λ − λ_min and λ_max − λ, of which one vanishes where the actuator collapses; once it has,
+    /// nothing is awaited any more and both stay at λ_max − λ_min.
+    fn indicators(view: &View<Nondimensional>, indicators: &mut [f64]) {
+        let limits = view.scene.limits;
+        let stretch = view.stretch();
+        let width = limits.upper - limits.lower;
+        let (lower, upper) = if view.collapse.is_some() {
+            (width, width)
+        } else {
+            (stretch - limits.lower, limits.upper - stretch)
+        };
+        indicators.copy_from_slice(&[lower, upper]);
+    }
+
+    fn is_finite(state: &State) -> bool {
+        state.position.is_finite() && state.rate.is_finite()
+    }
+
+    fn component(state: &mut State, place: usize) -> Option<&mut f64> {
+        [&mut state.position, &mut state.rate]
+            .into_iter()
+            .nth(place)
+    }
+
+    fn check_state(view: &View<Nondimensional>) -> Result<(), String> {
+        let stretch = view.stretch();
+        if stretch > 0.0 && view.stretch_acceleration().is_finite() {
+            return Ok(());
+        }
+        Err(format!("there is no motion at the stretch {stretch}"))
+    }
+
+    fn state(view: &View<Nondimensional>) -> State {
+        view.state()
+    }
+
+    fn along(view: &View<Nondimensional>, direction: &Direction<Nondimensional>) -> Sample<Dual> {
+        Sample::along(view.scene, *view.time, view.state(), view.held(), direction)
+    }
+
+    fn from_now_on(view: &View<Nondimensional>, order: usize) -> Sample<TimeSeries> {
+        Sample::from_now_on(view.scene, *view.time, view.state(), view.held(), order)
+    }
+}
+
+const GUID: guid::Text = guid::of::<Nondimensional>();
+
+/// An instance of the nondimensional actuator.
+pub type Instance = crate::slave::Instance<Nondimensional>;
+
+/// Value reference of a variable, by its name.
+#[must_use]
+pub fn value_reference(name: &str) -> Option<u32> {
+    variables::value_reference::<Nondimensional>(name)
+}
+
+impl Scene {
+    /// The scene in which each variable has its start value.
+    #[must_use]
+    pub fn at_start() -> Scene {
+        <Nondimensional as Model>::at_start()
+    }
+}
+
+impl Motion<Nondimensional> for Trajectory {
+    fn begin(scene: &Scene, time: Double, tolerance: f64) -> Trajectory {
+        let trajectory = Trajectory::new(scene.start, time, scene.limits, tolerance);
+        if scene.record_extremes {
+            trajectory.recording_extremes()
+        } else {
+            trajectory
+        }
+    }
+
+    #[inline]
+    fn advance(&mut self, scene: &Scene, step: f64) -> Result<Progress, Failure> {
+        Trajectory::advance(self, scene, step)
+    }
+
+    #[inline]
+    fn restart(&mut self) {
+        Trajectory::restart(self);
+    }
+
+    fn wait(&mut self, time: Double) {
+        Trajectory::wait(self, time);
+    }
+
+    #[inline]
+    fn time(&self) -> &Double {
+        Trajectory::time(self)
+    }
+
+    fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {
+        self.is_sound()
+            && self.keeps_to(scene.limits, tolerance)
+            && self.extremes().is_some() == scene.record_extremes
+    }
+
+    fn whereabouts(&self) -> String {
+        format!("stretch {}", self.position())
+    }
+}
