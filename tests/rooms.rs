@@ -111,7 +111,9 @@ fn each_room_imports_only_what_it_may() {
                     .chars()
                     .take_while(|c| c.is_alphanumeric() || *c == '_')
                     .collect();
-                let allowed = name == room || ours.contains(&name.as_str());
+                // Macros stand at the root of the crate, in no room.
+                let is_room = LAW.iter().any(|(room, ..)| *room == name);
+                let allowed = !is_room || name == room || ours.contains(&name.as_str());
                 assert!(
                     allowed,
                     "{}:{}: {room} may not import {name}",
