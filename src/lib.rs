@@ -26,6 +26,7 @@ pub mod model;
 pub mod nondimensional;
 pub mod pull_in;
 pub mod scene;
+mod shortest;
 pub mod slave;
 pub mod solver;
 pub mod sweep;

@@ -12,7 +12,7 @@ use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress};
-use crate::variables::Variable;
+use crate::variables::{Alias, Variable};
 
 /// A model: a marker type that names its table and its physics.
 pub trait Model: Copy + Debug + PartialEq + 'static {
@@ -27,6 +27,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// The variables; the position of a row is its value reference.
     const VARIABLES: &'static [Variable<Self>];
+
+    /// Further names of variables.
+    const ALIASES: &'static [Alias] = &[];
 
     /// Value references of the continuous states.
     const STATES: &'static [u32];
@@ -48,6 +51,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// The motion, where the model integrates it itself.
     type Motion: Motion<Self>;
+
+    /// What is recorded of a motion that the host integrates.
+    type Record: Record<Self>;
 
     /// Where a motion ends.
     type Limit: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
@@ -108,6 +114,12 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// The component of a state that is the `place`-th of [`Model::STATES`].
     fn component(state: &mut Self::State, place: usize) -> Option<&mut f64>;
 
+    /// The number of the window over which something is recorded; a change of it starts the
+    /// records anew.
+    fn window(_scene: &Self::Scene) -> f64 {
+        0.0
+    }
+
     /// Why there is no motion from the present state, in words, if there is none: the host's
     /// integrator has tried a state that is too far out.
     ///
@@ -141,6 +153,9 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     /// Starts anew from the present state: the scene has changed.
     fn restart(&mut self);
 
+    /// Starts what it records anew, at the present.
+    fn record_anew(&mut self, scene: &M::Scene);
+
     /// Lets time pass in which nothing moves.
     fn wait(&mut self, time: Double);
 
@@ -153,6 +168,21 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
 
     /// Where the motion is, in words, for messages.
     fn whereabouts(&self) -> String;
+}
+
+/// What is recorded of a motion that the host integrates, in steps of its own.
+pub trait Record<M: Model>: Copy + Debug + PartialEq + Serialize + DeserializeOwned {
+    /// Records from this state on.
+    fn begin(scene: &M::Scene, time: Double, state: M::State) -> Self;
+
+    /// Records the host's step that has come to this state.
+    fn include_step(&mut self, scene: &M::Scene, time: Double, state: M::State);
+
+    /// Records this state alone: it may have jumped.
+    fn include(&mut self, scene: &M::Scene, time: Double, state: M::State);
+
+    /// Whether the numbers fit together as a record of the scene.
+    fn is_valid(&self, scene: &M::Scene) -> bool;
 }
 
 /// What a host does with a model at first.
@@ -185,7 +215,12 @@ pub struct Collapse<L> {
 /// Where the state of the motion is known from.
 pub enum Place<'a, M: Model> {
     /// It is this one: at the start, or where the host integrates.
-    At(M::State),
+    At {
+        /// The state.
+        state: M::State,
+        /// What is recorded of the motion to it.
+        record: M::Record,
+    },
     /// The present of this motion.
     On(&'a M::Motion),
 }

@@ -19,10 +19,15 @@ pub struct Scene {
     pub start: State,
     /// The stretches between which the motion is followed.
     pub limits: Limits,
-    /// What happens at a limit.
+    /// What happens at a limit, as the host that knows enumerations says.
     pub on_pull_in: AtLimit,
-    /// Whether the extremes of the stretch are recorded.
+    /// Not 0: a host that sets numbers only asks to terminate there.
+    pub terminate_on_pull_in: f64,
+    /// Whether the extremes of the stretch are recorded, as the host that knows
+    /// Booleans says.
     pub record_extremes: bool,
+    /// The number of the window over which extremes are recorded; not 0, they are.
+    pub extremes_window: f64,
     /// Voltage and prestress.
     pub drive: Drive,
 }
@@ -45,14 +50,33 @@ impl Scene {
             upper: 0.0,
         },
         on_pull_in: AtLimit::Hold,
+        terminate_on_pull_in: 0.0,
         record_extremes: false,
+        extremes_window: 0.0,
         drive: Drive {
             since: Double::ZERO,
             voltage: Polynomial::constant(0.0),
             prestress: Polynomial::constant(0.0),
             harmonic: Harmonic::OFF,
+            lead: 0.0,
         },
     };
+
+    /// What happens at a limit, whichever way the host has said it.
+    #[must_use]
+    pub fn at_limit(&self) -> AtLimit {
+        if self.terminate_on_pull_in == 0.0 {
+            self.on_pull_in
+        } else {
+            AtLimit::Terminate
+        }
+    }
+
+    /// Whether extremes are recorded, whichever way the host has said it.
+    #[must_use]
+    pub fn records_extremes(&self) -> bool {
+        self.record_extremes || self.extremes_window != 0.0
+    }
 
     /// The motion that this scene describes.
     #[must_use]

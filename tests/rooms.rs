@@ -10,7 +10,12 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
     ("pull_in", &["actuator"], &[]),
     ("scene", &["actuator", "model", "solver"], &["serde"]),
     ("model", &["solver", "variables"], &["serde"]),
-    ("variables", &["actuator", "model", "solver"], &[]),
+    ("shortest", &[], &[]),
+    (
+        "variables",
+        &["actuator", "model", "shortest", "solver"],
+        &[],
+    ),
     (
         "view",
         &[
@@ -29,6 +34,7 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
             "description",
             "model",
             "scene",
+            "shortest",
             "slave",
             "solver",
             "variables",
@@ -48,7 +54,7 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "description",
-        &["model", "slave", "variables"],
+        &["model", "shortest", "variables"],
         &["quick_xml", "serde"],
     ),
     (

@@ -10,6 +10,12 @@ use crate::solver::double::{Double, halves};
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
+/// 2π.
+const TURN: Double = Double {
+    high: std::f64::consts::TAU,
+    low: 2.449_293_598_294_706_4e-16,
+};
+
 /// Derivatives of an input that are taken into account: orders 1 to 4.
 pub const HIGHEST_DERIVATIVE: usize = 4;
 
@@ -114,9 +120,9 @@ impl Harmonic {
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
     #[inline(always)]
-    pub(super) fn angle(&self, time: Double) -> f64 {
+    fn angle(&self, time: Double) -> f64 {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
-        const TURN: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
+        const PARTS: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
         const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
         let turns = (time.high * self.frequency) * (1.0 / std::f64::consts::TAU);
         if turns.abs() < EXACT_TURNS {
@@ -124,7 +130,7 @@ impl Harmonic {
             let [time_head, time_tail] = halves(time.high);
             let [head, tail] = halves(self.frequency);
             let rest = (time_head * tail + (time_tail + time.low) * self.frequency) + self.phase;
-            ((time_head * head - turns * TURN[0]) - turns * TURN[1]) + rest
+            ((time_head * head - turns * PARTS[0]) - turns * PARTS[1]) + rest
         } else {
             self.late_angle(time)
         }
@@ -133,23 +139,9 @@ impl Harmonic {
     /// The same after more turns than that.
     #[inline(never)]
     fn late_angle(&self, time: Double) -> f64 {
-        let turn = Double {
-            high: std::f64::consts::TAU,
-            low: 2.449_293_598_294_706_4e-16,
-        };
         let angle = time.scale(self.frequency);
-        let turns = (angle.high * (1.0 / std::f64::consts::TAU)).round();
-        angle.sub(turn.scale(turns)).value() + self.phase
-    }
-
-    /// The alternating voltage at `time` as it changes in a direction, whose
-    /// numbers are the rates of change of those in their places.
-    fn along(&self, direction: &Harmonic, time: Double) -> Dual {
-        let angle = Dual::new(
-            self.angle(time),
-            direction.frequency * time.value() + direction.phase,
-        );
-        Dual::new(self.amplitude, direction.amplitude) * angle.sin()
+        let turns = (angle.high * (1.0 / TURN.high)).round();
+        angle.sub(TURN.scale(turns)).value() + self.phase
     }
 }
 
@@ -164,6 +156,9 @@ pub struct Drive {
     pub prestress: Polynomial,
     /// The built-in alternating voltage.
     pub harmonic: Harmonic,
+    /// By how much its angle is ahead of ωt + ϑ, radians: the frequency has changed on
+    /// the way, and the phase has run on.
+    pub lead: f64,
 }
 
 impl Drive {
@@ -175,13 +170,38 @@ impl Drive {
             voltage: Polynomial::constant(voltage),
             prestress: Polynomial::constant(prestress),
             harmonic: Harmonic::OFF,
+            lead: 0.0,
         }
     }
 
-    /// Whether the inputs are polynomials in finite numbers.
+    /// The angle of the alternating voltage at `time`.
+    #[inline(always)]
+    pub(super) fn angle(&self, time: Double) -> f64 {
+        self.harmonic.angle(time) + self.lead
+    }
+
+    /// Gives the alternating voltage another frequency from now on, the time from
+    /// which the inputs count; its phase runs on from where it is.
+    pub fn retune(&mut self, frequency: f64) {
+        let mut carrier = Harmonic {
+            phase: 0.0,
+            ..self.harmonic
+        };
+        let before = carrier.angle(self.since);
+        carrier.frequency = frequency;
+        let lead = self.lead + (before - carrier.angle(self.since));
+        let turns = (lead * (1.0 / TURN.high)).round();
+        self.lead = (lead - turns * TURN.high) - turns * TURN.low;
+        self.harmonic.frequency = frequency;
+    }
+
+    /// Whether its numbers are finite, but for the settings of the alternating voltage.
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        self.since.value().is_finite() && self.voltage.is_finite() && self.prestress.is_finite()
+        self.since.value().is_finite()
+            && self.lead.is_finite()
+            && self.voltage.is_finite()
+            && self.prestress.is_finite()
     }
 
     /// Whether voltage and prestress keep their values.
@@ -210,7 +230,12 @@ impl Drive {
         };
         let voltage = input(&self.voltage, &direction.voltage);
         let prestress = input(&self.prestress, &direction.prestress);
-        let alternating = self.harmonic.along(&direction.harmonic, time);
+        let (harmonic, change) = (&self.harmonic, &direction.harmonic);
+        let angle = Dual::new(
+            self.angle(time),
+            change.frequency * time.value() + change.phase,
+        );
+        let alternating = Dual::new(harmonic.amplitude, change.amplitude) * angle.sin();
         (voltage + alternating, prestress)
     }
 
@@ -229,7 +254,7 @@ impl Drive {
             angle: if self.harmonic.amplitude == 0.0 {
                 None
             } else {
-                Some(self.harmonic.angle(*time))
+                Some(self.angle(*time))
             },
         }
     }
@@ -242,7 +267,8 @@ pub struct LocalDrive<'a> {
     /// The origin, counted as the time of the inputs; nothing where both keep their
     /// values.
     shift: Option<f64>,
-    /// ωt + ϑ at the origin, less whole turns; nothing where nothing alternates.
+    /// The angle of the alternating voltage at the origin; nothing where nothing
+    /// alternates.
     angle: Option<f64>,
 }
 
@@ -321,12 +347,32 @@ mod tests {
         };
         // A million turns later, to the rounding of the time itself.
         let turns = 1e6;
-        let late = Double::new(turns)
-            .mul(Double {
-                high: std::f64::consts::TAU,
-                low: 2.449_293_598_294_706_4e-16,
-            })
-            .div(Double::new(0.1471));
+        let late = TURN.scale(turns).div(Double::new(0.1471));
         assert!((harmonic.angle(late) - 0.3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_phase_runs_on_through_a_hundred_thousand_frequencies() {
+        let mut drive = Drive::constant(0.0, 0.0);
+        drive.harmonic = Harmonic {
+            amplitude: 1.0,
+            frequency: 0.25,
+            phase: 0.5,
+        };
+        // Sums of steps and of frequencies of few bits, so that nothing is rounded
+        // in the expected angle before it is reduced.
+        let (mut angle, mut time) = (Double::ZERO, 0.0);
+        for k in 0..100_000_u32 {
+            let frequency = 0.125 + f64::from(k % 64) / 64.0;
+            drive.since = Double::new(time);
+            drive.retune(frequency);
+            angle = angle.plus(0.375 * frequency);
+            time += 0.375;
+            let turns = (angle.high / TURN.high).round();
+            let expected = angle.sub(TURN.scale(turns)).value();
+            let got = drive.angle(Double::new(time)) - 0.5;
+            let off = ((got - expected) / TURN.high).round() * TURN.high + expected - got;
+            assert!(off.abs() < 1e-12, "{off:e} after {k} changes");
+        }
     }
 }

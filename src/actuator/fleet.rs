@@ -79,7 +79,7 @@ impl batch::Fleet for Fleet {
         self.prestress[lane] = prestress.value();
         self.amplitude[lane] = harmonic.amplitude;
         self.frequency[lane] = harmonic.frequency;
-        self.angle[lane] = harmonic.angle(time);
+        self.angle[lane] = motion.drive.angle(time);
     }
 
     #[inline(always)]

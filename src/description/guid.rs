@@ -48,6 +48,12 @@ const fn table<M: Model>() -> u128 {
         i += 1;
     }
     let mut i = 0;
+    while i < M::ALIASES.len() {
+        let alias = &M::ALIASES[i];
+        hash = hash.text(alias.name).text(alias.description).text(alias.of);
+        i += 1;
+    }
+    let mut i = 0;
     while i < LOG_CATEGORIES.len() {
         hash = hash.text(LOG_CATEGORIES[i].0).text(LOG_CATEGORIES[i].1);
         i += 1;

@@ -11,9 +11,9 @@ use schema::{
 use serde::Serialize;
 
 use crate::model::Model;
-use crate::slave::DEFAULT_TOLERANCE;
 use crate::variables::{
-    self, Access, Causality, Dependencies, Kind, Unit, Variability, Variable, value_reference,
+    self, Access, Alias, Causality, Dependencies, Kind, Unit, Variability, Variable,
+    value_reference,
 };
 
 /// Log categories with their meaning.
@@ -83,14 +83,19 @@ fn description<M: Model>() -> FmiModelDescription {
                 .map(|(name, description)| Category { name, description })
                 .into(),
         },
+        // No tolerance: it would be that of two integrators, ours and a host's.
         default_experiment: DefaultExperiment {
             start_time: Number(0.0),
             stop_time: Number(M::EXPERIMENT.stop_time),
-            tolerance: Number(DEFAULT_TOLERANCE),
             step_size: Number(M::EXPERIMENT.step_size),
         },
         model_variables: ModelVariables {
-            scalar_variable: M::VARIABLES.iter().zip(0..).map(scalar_variable).collect(),
+            scalar_variable: M::VARIABLES
+                .iter()
+                .zip(0..)
+                .map(scalar_variable)
+                .chain(M::ALIASES.iter().map(alias::<M>))
+                .collect(),
         },
         model_structure: model_structure::<M>(),
     }
@@ -169,8 +174,8 @@ fn scalar_variable<M: Model>((variable, value_reference): (&Variable<M>, u32)) -
             real = Some(Real {
                 unit: variable.unit.name,
                 display_unit: variable.unit.displayed.first().map(|unit| unit.name),
-                min: Number(min),
-                max: Number(max),
+                min: min.is_finite().then_some(Number(min)),
+                max: max.is_finite().then_some(Number(max)),
                 nominal: Number(nominal),
                 start: start.map(Number),
                 derivative: variable.derivative_of.map(index::<M>),
@@ -218,6 +223,20 @@ fn scalar_variable<M: Model>((variable, value_reference): (&Variable<M>, u32)) -
         boolean,
         enumeration,
     }
+}
+
+/// A further name of a variable: a local of the same value reference and type.
+fn alias<M: Model>(alias: &Alias) -> ScalarVariable {
+    let reference = value_reference::<M>(alias.of).unwrap_or_default();
+    let mut variable = scalar_variable::<M>((row(&reference), reference));
+    variable.name = alias.name;
+    variable.description = alias.description;
+    variable.causality = "local";
+    if let Some(real) = &mut variable.real {
+        // The state is listed by its own name.
+        (real.derivative, real.reinit) = (None, None);
+    }
+    variable
 }
 
 /// The outputs follow from the states alone, so that no step has an algebraic

@@ -3,13 +3,14 @@
 
 use serde::{Serialize, Serializer};
 
+use crate::shortest::Shortest;
+
 /// A real number, written with an exponent where it is very large or small.
 pub struct Number(pub f64);
 
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let digits = format!("{:?}", self.0);
-        serializer.serialize_str(digits.strip_suffix(".0").unwrap_or(&digits))
+        serializer.collect_str(&Shortest(self.0))
     }
 }
 
@@ -181,8 +182,6 @@ pub struct DefaultExperiment {
     pub start_time: Number,
     #[serde(rename = "@stopTime")]
     pub stop_time: Number,
-    #[serde(rename = "@tolerance")]
-    pub tolerance: Number,
     #[serde(rename = "@stepSize")]
     pub step_size: Number,
 }
@@ -221,10 +220,10 @@ pub struct Real {
     pub unit: &'static str,
     #[serde(rename = "@displayUnit", skip_serializing_if = "Option::is_none")]
     pub display_unit: Option<&'static str>,
-    #[serde(rename = "@min")]
-    pub min: Number,
-    #[serde(rename = "@max")]
-    pub max: Number,
+    #[serde(rename = "@min", skip_serializing_if = "Option::is_none")]
+    pub min: Option<Number>,
+    #[serde(rename = "@max", skip_serializing_if = "Option::is_none")]
+    pub max: Option<Number>,
     #[serde(rename = "@nominal")]
     pub nominal: Number,
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]

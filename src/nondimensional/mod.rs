@@ -1,22 +1,25 @@
 //! The nondimensional actuator of the paper as a [`Model`]: its table of variables and the
 //! physics behind it.
 
+mod recording;
 mod table;
 
-pub use table::{ON_PULL_IN, VARIABLES};
+pub use recording::Recording;
+pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
 
 use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
 use crate::model::{AtLimit, Direction, Experiment, Model, Motion, View};
 use crate::scene::Scene;
+use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limit;
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
-use crate::variables::{self, Variable};
+use crate::variables::{self, Alias, Variable};
 use crate::view::{Quantities, Sample};
 
 /// The marker of the model.
@@ -28,6 +31,7 @@ impl Model for Nondimensional {
     const DESCRIPTION: &'static str = env!("CARGO_PKG_DESCRIPTION");
     const GUID: &'static str = guid::text(&GUID);
     const VARIABLES: &'static [Variable<Nondimensional>] = &VARIABLES;
+    const ALIASES: &'static [Alias] = &ALIASES;
     const STATES: &'static [u32] = &variables::states::<Nondimensional, 2>(&VARIABLES);
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Nondimensional, 2>(&VARIABLES);
     /// λ − λ_min and λ_max − λ.
@@ -40,6 +44,7 @@ impl Model for Nondimensional {
     type Scene = Scene;
     type State = State;
     type Motion = Trajectory;
+    type Record = Recording;
     type Limit = Limit;
     type Sample<N: Number> = Sample<N>;
 
@@ -82,7 +87,7 @@ impl Model for Nondimensional {
     }
 
     fn at_limit(scene: &Scene, _limit: Limit) -> AtLimit {
-        scene.on_pull_in
+        scene.at_limit()
     }
 
     fn describe(scene: &Scene, limit: Limit, time: f64) -> String {
@@ -136,12 +141,20 @@ impl Model for Nondimensional {
             .nth(place)
     }
 
+    fn window(scene: &Scene) -> f64 {
+        scene.extremes_window
+    }
+
     fn check_state(view: &View<Nondimensional>) -> Result<(), String> {
-        let stretch = view.stretch();
+        let [stretch, rate] = [view.stretch(), view.stretch_rate()];
         if stretch > 0.0 && view.stretch_acceleration().is_finite() {
             return Ok(());
         }
-        Err(format!("there is no motion at the stretch {stretch}"))
+        Err(format!(
+            "there is no motion at the stretch {} and the rate {}",
+            Shortest(stretch),
+            Shortest(rate)
+        ))
     }
 
     fn state(view: &View<Nondimensional>) -> State {
@@ -179,7 +192,7 @@ impl Scene {
 impl Motion<Nondimensional> for Trajectory {
     fn begin(scene: &Scene, time: Double, tolerance: f64) -> Trajectory {
         let trajectory = Trajectory::new(scene.start, time, scene.limits, tolerance);
-        if scene.record_extremes {
+        if scene.records_extremes() {
             trajectory.recording_extremes()
         } else {
             trajectory
@@ -196,6 +209,10 @@ impl Motion<Nondimensional> for Trajectory {
         Trajectory::restart(self);
     }
 
+    fn record_anew(&mut self, scene: &Scene) {
+        self.record_extremes_anew(scene.records_extremes());
+    }
+
     fn wait(&mut self, time: Double) {
         Trajectory::wait(self, time);
     }
@@ -208,7 +225,7 @@ impl Motion<Nondimensional> for Trajectory {
     fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {
         self.is_sound()
             && self.keeps_to(scene.limits, tolerance)
-            && self.extremes().is_some() == scene.record_extremes
+            && self.extremes().is_some() == scene.records_extremes()
     }
 
     fn whereabouts(&self) -> String {

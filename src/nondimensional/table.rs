@@ -2,8 +2,11 @@
 
 use super::Nondimensional;
 use crate::model::AtLimit;
+use crate::solver::number::Number;
 use crate::variables::rows::{UNDECLARED, depends, formula, positive, real, unlimited, value};
-use crate::variables::{Causality, Enumeration, Kind, Variability, Variable, checked, units};
+use crate::variables::{
+    Alias, Causality, Derivatives, Enumeration, Kind, Variability, Variable, checked, units,
+};
 use crate::view::Quantities;
 
 use Causality::{Local, Output};
@@ -23,22 +26,36 @@ pub static ON_PULL_IN: Enumeration = Enumeration {
 
 type Row = Variable<Nondimensional>;
 
+const VOLTS: &str = "it is nondimensional: volts*sqrt(eps/mu)/H";
+const FORCE: &str = "it is nondimensional: force/(mu*H*L)";
+const SURFACE: &str = "it is nondimensional: newtons per metre over mu*H";
+const FREQUENCY: &str = "it is nondimensional: radians per second*H*sqrt(rho/(12*mu))";
+const RATE: &str = "it is nondimensional: rate per second*H*sqrt(rho/(12*mu))";
+
+/// What changes at events only.
+const AT_EVENTS: Option<Derivatives<Nondimensional>> = Some(Derivatives {
+    along: |sample| sample.stretch().same(0.0),
+    from_now_on: |sample| sample.stretch().same(0.0),
+});
+
 /// All variables, in the order of their value references.
 pub static VARIABLES: [Row; COUNT] = checked([
     Row::input(
         "phi",
         "nondimensional voltage, phi*sqrt(eps/mu)/H",
-        real(-1e3, 1e3, 1.0),
+        real(-10.0, 10.0, 1.0),
         |view| view.voltage(),
         |scene| &mut scene.drive.voltage,
-    ),
+    )
+    .converted(VOLTS),
     Row::input(
         "S",
         "nondimensional prestress, P/(mu*H*L)",
-        real(-1e3, 1e3, 1.0),
+        real(-100.0, 100.0, 1.0),
         |view| view.prestress(),
         |scene| &mut scene.drive.prestress,
-    ),
+    )
+    .converted(FORCE),
     Row::parameter(
         "c",
         "squared ratio of side to thickness, L^2/H^2",
@@ -47,7 +64,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         100.0,
         |scene| scene.parameters.aspect,
         |scene, value| scene.parameters.aspect = value,
-    ),
+    )
+    .converted("it is a ratio of squares: L^2/H^2"),
     Row::parameter(
         "gamma_s",
         "surface energy density over mu*H",
@@ -56,7 +74,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         0.0,
         |scene| scene.parameters.surface_energy,
         |scene, value| scene.parameters.surface_energy = value,
-    ),
+    )
+    .converted(SURFACE),
     Row::parameter(
         "tau_s",
         "surface tension over mu*H",
@@ -65,7 +84,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         0.0,
         |scene| scene.parameters.surface_tension,
         |scene, value| scene.parameters.surface_tension = value,
-    ),
+    )
+    .converted(SURFACE),
     Row::parameter(
         "E_s",
         "surface elasticity over mu*H",
@@ -74,7 +94,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         0.0,
         |scene| scene.parameters.surface_elasticity,
         |scene, value| scene.parameters.surface_elasticity = value,
-    ),
+    )
+    .converted(SURFACE),
     Row::parameter(
         "lambda_start",
         "stretch at the start time",
@@ -92,35 +113,40 @@ pub static VARIABLES: [Row; COUNT] = checked([
         0.0,
         |scene| scene.start.rate,
         |scene, value| scene.start.rate = value,
-    ),
+    )
+    .converted(RATE),
     Row::parameter(
         "phi_ac",
         "amplitude of the built-in voltage phi_ac*sin(omega_ac*t + phase_ac), added to phi",
         Tunable,
-        real(-1e3, 1e3, 1.0),
+        real(-10.0, 10.0, 1.0),
         0.0,
         |scene| scene.drive.harmonic.amplitude,
         |scene, value| scene.drive.harmonic.amplitude = value,
-    ),
+    )
+    .converted(VOLTS),
     Row::parameter(
         "omega_ac",
-        "angular frequency of the built-in voltage, radians per unit of time",
+        "angular frequency of the built-in voltage, radians per unit of time; changed on the way, the phase runs on from where it is",
         Tunable,
         real(0.0, 1e3, 0.1),
         0.0,
         |scene| scene.drive.harmonic.frequency,
         |scene, value| scene.drive.harmonic.frequency = value,
     )
+    .from_now_on(|scene, value| scene.drive.retune(value))
+    .converted(FREQUENCY)
     .in_unit(&units::ANGULAR_FREQUENCY),
     Row::parameter(
         "phase_ac",
-        "phase of the built-in voltage at t = 0, radians",
+        "phase of the built-in voltage, radians: at t = 0, as long as omega_ac is not changed on the way",
         Tunable,
-        real(-1e3, 1e3, 1.0),
+        real(-10.0, 10.0, 1.0),
         0.0,
         |scene| scene.drive.harmonic.phase,
         |scene, value| scene.drive.harmonic.phase = value,
     )
+    .converted("it is in radians: degrees*pi/180")
     .in_unit(&units::ANGLE),
     Row::parameter(
         "lambda_min",
@@ -176,10 +202,13 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "pulled_in",
-        "whether the stretch has reached lambda_min or lambda_max",
-        Output,
+        "whether the stretch has reached lambda_min or lambda_max; the output collapsed is the same as a number",
+        Local,
         Kind::Boolean,
-        value(|view| f64::from(u8::from(view.collapse.is_some()))),
+        (
+            |view| f64::from(u8::from(view.collapse.is_some())),
+            AT_EVENTS,
+        ),
         depends(&[], &[]),
     ),
     Row::result(
@@ -230,7 +259,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
         "phi_total",
         "phi with the built-in voltage added",
         Local,
-        real(-2e3, 2e3, 1.0),
+        real(-20.0, 20.0, 1.0),
         formula!(total_voltage),
         depends(&["phi"], &["phi", "phi_ac", "omega_ac", "phase_ac"]),
     ),
@@ -238,7 +267,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
         "electric_field",
         "true electric field, phi_total*lambda^2",
         Local,
-        real(-2e15, 2e15, 1.0),
+        real(-2e13, 2e13, 1.0),
         formula!(electric_field),
         depends(
             &["phi", "lambda"],
@@ -255,7 +284,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "phi_pull_in",
-        "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf where there is none",
+        "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
         value(|view| {
@@ -277,7 +306,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "phi_pull_in_static",
-        "static pull-in voltage for the present S; +inf where there is none",
+        "static pull-in voltage for the present S; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
         value(|view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage)),
@@ -293,7 +322,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "pull_in_margin",
-        "by how much the voltage may grow until dynamic pull-in; negative beyond, +inf where there is none",
+        "by how much the voltage may grow until dynamic pull-in; negative beyond, +inf, which JSON cannot hold, where there is none",
         Local,
         unlimited(1.0),
         value(|view| view.pull_in_margin()),
@@ -301,7 +330,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "pull_in_time",
-        "time at which pulled_in became true; +inf until then",
+        "time at which pulled_in became true; +inf, which JSON cannot hold, until then",
         Local,
         unlimited(1.0),
         value(|view| view.collapse.map_or(f64::INFINITY, |c| c.time.value())),
@@ -318,7 +347,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "lambda_lowest",
-        "smallest lambda since the start time; 0 where extremes are not recorded",
+        "smallest lambda since the recording began; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
         value(|view| view.extremes().map_or(0.0, |e| e.lowest)),
@@ -326,7 +355,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "lambda_highest",
-        "largest lambda since the start time; 0 where extremes are not recorded",
+        "largest lambda since the recording began; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
         value(|view| view.extremes().map_or(0.0, |e| e.highest)),
@@ -334,7 +363,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "lambda3_lowest",
-        "smallest lambda3 since the start time; 0 where extremes are not recorded",
+        "smallest lambda3 since the recording began; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
         value(|view| {
@@ -345,12 +374,49 @@ pub static VARIABLES: [Row; COUNT] = checked([
     ),
     Row::result(
         "lambda3_highest",
-        "largest lambda3 since the start time; 0 where extremes are not recorded",
+        "largest lambda3 since the recording began; 0 where extremes are not recorded",
         Local,
         real(0.0, 1e6, 1.0),
         value(|view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest))),
         UNDECLARED,
     ),
+    Row::result(
+        "collapsed",
+        "pulled_in as a number: 1 once the stretch has reached lambda_min or lambda_max, 0 before",
+        Output,
+        real(0.0, 1.0, 1.0),
+        (
+            |view| f64::from(u8::from(view.collapse.is_some())),
+            AT_EVENTS,
+        ),
+        depends(&[], &[]),
+    )
+    .at_events(),
+    Row::parameter(
+        "terminate_on_pull_in",
+        "on_pull_in for hosts that set numbers only: 0 leaves it to on_pull_in, any other value is terminate",
+        Fixed,
+        real(0.0, 1.0, 1.0),
+        0.0,
+        |scene| scene.terminate_on_pull_in,
+        |scene, value| scene.terminate_on_pull_in = value,
+    ),
+    Row::parameter(
+        "extremes_window",
+        "number of the window over which extremes are recorded: a changed value starts them anew at the present time; not 0, they are recorded whatever record_extremes is",
+        Tunable,
+        real(0.0, 1e9, 1.0),
+        0.0,
+        |scene| scene.extremes_window,
+        |scene, value| scene.extremes_window = value,
+    ),
 ]);
 
-const COUNT: usize = 34;
+const COUNT: usize = 37;
+
+/// Further names.
+pub static ALIASES: [Alias; 1] = [Alias {
+    name: "stretch",
+    description: "lambda by a name that is no keyword of Python, for queries and attributes",
+    of: "lambda",
+}];

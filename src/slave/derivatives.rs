@@ -142,7 +142,15 @@ impl<M: Model> Instance<M> {
                     let input = of(&mut direction.scene);
                     input.set_value(input.value() + change);
                 }
-                (Access::Setting { get, set }, Kind::Real { .. }) => {
+                // What has an effect on the future only.
+                (
+                    Access::Setting {
+                        from_now_on: Some(_),
+                        ..
+                    },
+                    _,
+                ) if begun => {}
+                (Access::Setting { get, set, .. }, Kind::Real { .. }) => {
                     let sum = get(&direction.scene) + change;
                     set(&mut direction.scene, sum);
                 }
@@ -160,7 +168,7 @@ impl<M: Model> Instance<M> {
 }
 
 /// The number of a state to which a state variable belongs.
-fn state_component<M: Model>(state: &mut M::State, reference: u32) -> Option<&mut f64> {
+pub(super) fn state_component<M: Model>(state: &mut M::State, reference: u32) -> Option<&mut f64> {
     let place = M::STATES.iter().position(|state| *state == reference)?;
     M::component(state, place)
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
 use super::{Course, Event, Fault, Instance};
-use crate::model::{AtLimit, Collapse, Model};
+use crate::model::{AtLimit, Collapse, Model, Record};
 use crate::solver::double::Double;
 use crate::variables::{Access, Kind};
 
@@ -20,6 +20,7 @@ pub struct Exchange<M: Model> {
     pub(super) time: Double,
     pub(super) state: M::State,
     pub(super) collapse: Option<Collapse<M::Limit>>,
+    pub(super) record: M::Record,
 }
 
 /// What an event has changed.
@@ -35,17 +36,27 @@ pub struct Update {
 
 impl<M: Model> Exchange<M> {
     pub(super) fn new(scene: &M::Scene, time: Double) -> Exchange<M> {
+        let state = M::start(scene);
         Exchange {
             time,
-            state: M::start(scene),
+            state,
             collapse: None,
+            record: M::Record::begin(scene, time, state),
         }
     }
 
+    /// Starts what is recorded anew, at the present.
+    pub(super) fn record_anew(&mut self, scene: &M::Scene) {
+        self.record = M::Record::begin(scene, self.time, self.state);
+    }
+
     /// Whether the numbers can be those of a motion.
-    pub(super) fn is_sound(&self) -> bool {
+    pub(super) fn is_sound(&self, scene: &M::Scene) -> bool {
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        M::is_finite(&self.state) && self.time.is_finite() && collapsed.is_finite()
+        M::is_finite(&self.state)
+            && self.time.is_finite()
+            && collapsed.is_finite()
+            && self.record.is_valid(scene)
     }
 }
 
@@ -65,6 +76,15 @@ impl<M: Model> Instance<M> {
     /// Ends the handling of events.
     pub fn enter_continuous_time(&mut self) {
         self.phase = Phase::ContinuousTime;
+        if let Course::Exchange(Exchange {
+            time,
+            state,
+            record,
+            ..
+        }) = &mut self.course
+        {
+            record.include(&self.scene, *time, *state);
+        }
     }
 
     /// Handles an event: where the stretch has reached a limit, the actuator
@@ -119,6 +139,8 @@ impl<M: Model> Instance<M> {
     pub fn completed_integrator_step(&mut self) -> Result<bool, Fault> {
         let scene = self.scene.clone();
         let exchange = self.exchange()?;
+        let (time, state) = (exchange.time, exchange.state);
+        exchange.record.include_step(&scene, time, state);
         Ok(exchange.collapse.is_none() && M::limit_reached(&scene, &exchange.state, 0.0).is_some())
     }
 

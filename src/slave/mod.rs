@@ -21,7 +21,7 @@ pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Model, Motion, Place, View};
+use crate::model::{Model, Motion, Place, Record, View};
 use crate::solver::double::Double;
 
 /// Relative tolerance of the stretch where the host defines none.
@@ -146,9 +146,20 @@ impl<M: Model> Instance<M> {
                 let motion = run.motion();
                 (Place::On(motion), motion.time(), run.collapse())
             }
-            Course::Exchange(now) => (Place::At(now.state), &now.time, now.collapse.as_ref()),
-            // The drive counts from the start time.
-            Course::Ahead => (Place::At(M::start(scene)), M::inputs_since(scene), None),
+            Course::Exchange(now) => {
+                let (state, record) = (now.state, now.record);
+                (
+                    Place::At { state, record },
+                    &now.time,
+                    now.collapse.as_ref(),
+                )
+            }
+            Course::Ahead => {
+                // The drive counts from the start time.
+                let (state, time) = (M::start(scene), M::inputs_since(scene));
+                let record = M::Record::begin(scene, *time, state);
+                (Place::At { state, record }, time, None)
+            }
         };
         View {
             scene,
@@ -280,8 +291,19 @@ impl<M: Model> Instance<M> {
 
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
-        if let Course::Run(run) = &self.course {
-            M::rebase_inputs(&mut self.scene, *run.motion().time());
+        match &self.course {
+            Course::Ahead => {}
+            Course::Run(run) => M::rebase_inputs(&mut self.scene, *run.motion().time()),
+            Course::Exchange(now) => M::rebase_inputs(&mut self.scene, now.time),
+        }
+    }
+
+    /// Starts what is recorded anew, at the present.
+    fn record_anew(&mut self) {
+        match &mut self.course {
+            Course::Ahead => {}
+            Course::Run(run) => run.record_anew(&self.scene),
+            Course::Exchange(now) => now.record_anew(&self.scene),
         }
     }
 

@@ -52,6 +52,11 @@ impl<M: Model> Run<M> {
         self.collapse.as_ref()
     }
 
+    /// Starts what is recorded anew, at the present.
+    pub(super) fn record_anew(&mut self, scene: &M::Scene) {
+        self.motion.record_anew(scene);
+    }
+
     pub(super) fn scene_changed(&mut self) {
         self.stale = true;
     }

@@ -15,7 +15,7 @@ use crate::model::Model;
 use crate::variables::Access;
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 3;
+pub const LAYOUT: u16 = 4;
 
 impl<M: Model> Instance<M> {
     /// The instance as bytes, in the memory of `buffer`.
@@ -97,7 +97,7 @@ impl<M: Model> Instance<M> {
         let sound = match &self.course {
             Course::Ahead => true,
             Course::Run(run) => run.is_sound(&self.scene, self.experiment.tolerance),
-            Course::Exchange(exchange) => exchange.is_sound(),
+            Course::Exchange(exchange) => exchange.is_sound(&self.scene),
         };
         if !sound {
             return Err("its numbers are not those of a motion".into());

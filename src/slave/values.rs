@@ -1,6 +1,8 @@
 //! Getting and setting variables by their value references.
 
-use super::{Fault, Instance};
+use super::derivatives::state_component;
+use super::phase::Phase;
+use super::{Course, Fault, Instance};
 use crate::actuator::drive::Polynomial;
 use crate::model::Model;
 use crate::variables::{Access, Kind, Variability, Variable};
@@ -121,7 +123,9 @@ impl<M: Model> Instance<M> {
         Err(Fault::discard(format!("{why}; try a shorter step")))
     }
 
-    /// Sets the variables of type `wanted` with these value references.
+    /// Sets the variables of type `wanted` with these value references. In model
+    /// exchange the states are among them, between the end of initialization and
+    /// that of the simulation: as `set_continuous_states` does.
     ///
     /// # Errors
     /// Error for an unknown reference, another type, a variable that cannot be
@@ -135,9 +139,15 @@ impl<M: Model> Instance<M> {
     ) -> Result<(), Fault> {
         for (place, &reference) in references.iter().enumerate() {
             let variable = typed::<M>(reference, wanted)?;
-            self.check_settable(variable)?;
-            check_value(variable, value(place))?;
+            if self.is_settable_state(reference) {
+                check_state(variable, value(place))?;
+            } else {
+                self.check_settable(variable)?;
+                check_value(variable, value(place))?;
+            }
         }
+        let window = M::window(&self.scene);
+        let begun = self.phase.has_begun();
         self.bring_drive_up_to_date();
         for (place, &reference) in references.iter().enumerate() {
             let value = value(place);
@@ -156,18 +166,42 @@ impl<M: Model> Instance<M> {
                     }
                     changed
                 }
-                Access::Setting { get, set } => {
-                    let before = get(&self.scene);
-                    set(&mut self.scene, value);
-                    before != value
+                Access::Setting {
+                    get,
+                    set,
+                    from_now_on,
+                } => {
+                    let changed = get(&self.scene) != value;
+                    match from_now_on {
+                        Some(change) if begun && changed => change(&mut self.scene, value),
+                        _ => set(&mut self.scene, value),
+                    }
+                    changed
                 }
-                Access::Result { .. } => false,
+                Access::Result { .. } => {
+                    if let Course::Exchange(now) = &mut self.course
+                        && let Some(component) = state_component::<M>(&mut now.state, reference)
+                    {
+                        *component = value;
+                    }
+                    false
+                }
             };
             if changed {
                 self.changed();
             }
         }
+        if M::window(&self.scene) != window {
+            self.record_anew();
+        }
         Ok(())
+    }
+
+    /// Whether this is a state that the host integrates, and may set at present.
+    #[inline]
+    fn is_settable_state(&self, reference: u32) -> bool {
+        matches!(self.phase, Phase::EventMode | Phase::ContinuousTime)
+            && M::STATES.contains(&reference)
     }
 
     #[inline]
@@ -192,6 +226,17 @@ fn not_settable<M: Model>(variable: &Variable<M>) -> Fault {
             format!("{name} is fixed after initialization; set it before, or call fmi2Reset first")
         }
     })
+}
+
+/// A state may be any finite number: a host's integrator tries far out.
+fn check_state<M: Model>(variable: &Variable<M>, value: f64) -> Result<(), Fault> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    let name = variable.name;
+    Err(Fault::error(format!(
+        "{name} = {value} is not a finite number"
+    )))
 }
 
 #[inline]

@@ -8,6 +8,7 @@
 
 use crate::actuator::drive::Polynomial;
 use crate::model::{Model, View};
+use crate::shortest::Shortest;
 use crate::solver::jet::{Dual, TimeSeries};
 
 pub mod rows;
@@ -83,6 +84,10 @@ pub enum Access<M: Model> {
         get: fn(&M::Scene) -> f64,
         /// Sets it.
         set: fn(&mut M::Scene, f64),
+        /// Sets it once the motion has begun, where that is another thing: nothing
+        /// then changes at once, only what follows. The time of the inputs counts from
+        /// the present.
+        from_now_on: Option<fn(&mut M::Scene, f64)>,
     },
     /// A result.
     Result {
@@ -126,12 +131,26 @@ pub struct Variable<M: Model> {
     pub kind: Kind,
     /// The unit of a real one.
     pub unit: &'static Unit,
+    /// How it follows from what an engineer would type, where that is likely to be
+    /// mistaken for it; for messages.
+    pub conversion: Option<&'static str>,
     /// The value before the host sets another; none for results.
     pub start: Option<f64>,
     /// The name of the state of which this is the derivative.
     pub derivative_of: Option<&'static str>,
     /// How it is read and set.
     pub access: Access<M>,
+}
+
+/// A further name of a variable, of the same value reference.
+#[derive(Clone, Copy, Debug)]
+pub struct Alias {
+    /// The further name.
+    pub name: &'static str,
+    /// What it is good for, for people.
+    pub description: &'static str,
+    /// The name of the variable.
+    pub of: &'static str,
 }
 
 // Derived, these would ask the same of the scene and the samples of the model, of which there are
@@ -199,9 +218,11 @@ const fn row_of_derivative<M: Model>(table: &[Variable<M>], name: &str) -> Optio
     None
 }
 
-/// Value reference of a variable of a model, by its name.
+/// Value reference of a variable of a model, by its name or a further name.
 #[must_use]
 pub fn value_reference<M: Model>(name: &str) -> Option<u32> {
+    let alias = M::ALIASES.iter().find(|alias| alias.name == name);
+    let name = alias.map_or(name, |alias| alias.of);
     M::VARIABLES
         .iter()
         .position(|variable| variable.name == name)
@@ -232,12 +253,18 @@ impl<M: Model> Variable<M> {
     #[cold]
     fn refusal(&self, value: f64, [min, max]: [f64; 2]) -> String {
         let name = self.name;
-        if !value.is_finite() {
-            format!("{name} = {value} is not a finite number")
-        } else if value < min {
+        let [value, min, max] = [value, min, max].map(Shortest);
+        if !value.0.is_finite() {
+            return format!("{name} = {value} is not a finite number");
+        }
+        let refusal = if value.0 < min.0 {
             format!("{name} = {value} is below its minimum {min}; set a value from {min} on")
         } else {
             format!("{name} = {value} is above its maximum {max}; set a value up to {max}")
+        };
+        match self.conversion {
+            Some(conversion) => format!("{refusal} ({conversion})"),
+            None => refusal,
         }
     }
 }

@@ -28,14 +28,14 @@ pub const fn real(min: f64, max: f64, nominal: f64) -> Kind {
     Kind::Real { min, max, nominal }
 }
 
-/// A result that is not negative and has no largest value.
+/// A result that is not negative and has no largest value; it may be +inf.
 pub const fn positive() -> Kind {
-    real(0.0, f64::MAX, 1.0)
+    real(0.0, f64::INFINITY, 1.0)
 }
 
 /// A result without limits.
 pub const fn unlimited(nominal: f64) -> Kind {
-    real(f64::MIN, f64::MAX, nominal)
+    real(f64::NEG_INFINITY, f64::INFINITY, nominal)
 }
 
 /// A result as it is read, and its derivatives.
@@ -73,6 +73,7 @@ impl<M: Model> Variable<M> {
             variability: Variability::Continuous,
             kind,
             unit: &units::ONE,
+            conversion: None,
             start: Some(0.0),
             derivative_of: None,
             access: Access::Input { get, of },
@@ -96,9 +97,14 @@ impl<M: Model> Variable<M> {
             variability,
             kind,
             unit: &units::ONE,
+            conversion: None,
             start: Some(start),
             derivative_of: None,
-            access: Access::Setting { get, set },
+            access: Access::Setting {
+                get,
+                set,
+                from_now_on: None,
+            },
         }
     }
 
@@ -122,6 +128,7 @@ impl<M: Model> Variable<M> {
             variability,
             kind,
             unit: &units::ONE,
+            conversion: None,
             start: None,
             derivative_of: None,
             access: Access::Result {
@@ -130,6 +137,26 @@ impl<M: Model> Variable<M> {
                 dependencies,
             },
         }
+    }
+
+    /// The row as that of a result that changes at events only.
+    pub const fn at_events(mut self) -> Variable<M> {
+        self.variability = Variability::Discrete;
+        self
+    }
+
+    /// The row with what to tell who has typed a value in another unit.
+    pub const fn converted(mut self, conversion: &'static str) -> Variable<M> {
+        self.conversion = Some(conversion);
+        self
+    }
+
+    /// The row of a setting whose change during the motion leaves the present as it is.
+    pub const fn from_now_on(mut self, change: fn(&mut M::Scene, f64)) -> Variable<M> {
+        if let Access::Setting { from_now_on, .. } = &mut self.access {
+            *from_now_on = Some(change);
+        }
+        self
     }
 
     /// The row in another unit than 1.

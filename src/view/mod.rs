@@ -20,7 +20,7 @@ impl Quantities<f64> for View<'_, Nondimensional> {
             (Some(Limit::Lower), _) => self.scene.limits.lower,
             (Some(Limit::Upper), _) => self.scene.limits.upper,
             (None, Place::On(trajectory)) => trajectory.position(),
-            (None, Place::At(state)) => state.position,
+            (None, Place::At { state, .. }) => state.position,
         }
     }
 
@@ -28,7 +28,7 @@ impl Quantities<f64> for View<'_, Nondimensional> {
         match (self.held(), self.place) {
             (Some(_), _) => 0.0,
             (None, Place::On(trajectory)) => trajectory.rate(),
-            (None, Place::At(state)) => state.rate,
+            (None, Place::At { state, .. }) => state.rate,
         }
     }
 
@@ -53,18 +53,19 @@ impl View<'_, Nondimensional> {
     /// The limit at which the actuator is held. Where the simulation ends
     /// instead, the state on arrival remains.
     pub(crate) fn held(&self) -> Option<Limit> {
-        match self.scene.on_pull_in {
+        match self.scene.at_limit() {
             AtLimit::Hold => self.collapse.map(|collapse| collapse.limit),
             AtLimit::Terminate => None,
         }
     }
 
-    /// The extremes of the stretch since the start, where they are recorded.
+    /// The extremes of the stretch since their recording began, where they are
+    /// recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
         match self.place {
             Place::On(trajectory) => trajectory.extremes(),
-            Place::At(_) => None,
+            Place::At { record, .. } => record.extremes,
         }
     }
 

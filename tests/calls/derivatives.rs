@@ -88,11 +88,8 @@ fn directional_derivatives_are_those_of_the_equation() {
             -x * (x * x - 1.0) * (3.0 * x * x - 1.0) / mass,
         ),
         ("lambda_ddot", "phi_ac", by_voltage * sine),
-        (
-            "lambda_ddot",
-            "omega_ac",
-            by_voltage * amplitude * 3.3 * cosine,
-        ),
+        // The phase runs on: what follows changes, the present does not.
+        ("lambda_ddot", "omega_ac", 0.0),
         ("lambda_ddot", "phase_ac", by_voltage * amplitude * cosine),
         ("lambda_ddot", "lambda_dot", 12.0 * v * x.powi(-7) / mass),
         ("lambda_ddot", "lambda", by_stretch),
@@ -164,12 +161,6 @@ fn during_initialization_start_values_are_known_and_states_are_not() {
             "phi_total cannot be differentiated by",
         ),
         (
-            "pulled_in",
-            "phi",
-            1.0,
-            "pulled_in has no directional derivative",
-        ),
-        (
             "pull_in_margin",
             "phi",
             1.0,
@@ -185,6 +176,26 @@ fn during_initialization_start_values_are_known_and_states_are_not() {
         assert!(host.last_line().contains(message), "{}", host.last_line());
     }
     assert_eq!(value, 7.0);
+    // Before the start the phase at t = 0 is what stays.
+    let late = started(1.5, "initialization");
+    let expected = 0.25 * 1.5 * (0.8_f64 * 1.5 + 0.6).cos();
+    let slope = directional(&late, "phi_total", &["omega_ac"], &[1.0]);
+    assert!((slope - expected).abs() < 1e-15);
+}
+
+/// A host that linearizes asks for those of every output.
+#[test]
+fn what_changes_at_events_only_has_derivatives_of_zero() {
+    let host = started(0.0, "stepping");
+    for unknown in ["collapsed", "pulled_in"] {
+        for known in ["phi", "lambda", "c"] {
+            assert_eq!(directional(&host, unknown, &[known], &[1.0]), 0.0);
+        }
+    }
+    assert_eq!(host.step(0.0, 0.5), OK);
+    for order in 1..=5 {
+        assert_eq!(output_derivative(&host, "collapsed", order), 0.0);
+    }
 }
 
 /// The declared dependencies are those that there are, no more and no fewer.

@@ -259,3 +259,175 @@ fn results_that_are_no_numbers_are_discarded() {
         assert_eq!(discarded > 0, place < 3, "{state:?}");
     }
 }
+
+/// A host that knows the states by their value references, as one does that
+/// optimizes: setting them is `fmi2SetContinuousStates`.
+#[test]
+fn states_are_set_by_value_reference() {
+    let names = [
+        "lambda",
+        "lambda_dot",
+        "lambda_ddot",
+        "lambda3",
+        "electric_field",
+    ];
+    for phase in ["event", "continuous"] {
+        let host = Host::in_phase_of(EXCHANGE, phase);
+        let twin = Host::in_phase_of(EXCHANGE, "continuous");
+        for actuator in [&host, &twin] {
+            assert_eq!(actuator.set("phi", 0.4), OK);
+        }
+        let references = ["stretch", "phi", "lambda_dot"].map(reference);
+        assert_eq!(references[0], reference("lambda"));
+        for (stretch, rate) in [(1.3, 0.2), (0.4, -3.0), (25.0, 0.0)] {
+            let c = host.component;
+            let values = [stretch, 0.4, rate];
+            assert_eq!(
+                unsafe { fmi2SetReal(c, references.as_ptr(), 3, values.as_ptr()) },
+                OK
+            );
+            twin.put(0.0, [stretch, rate]);
+            assert_eq!(host.fill(fmi2GetContinuousStates), [stretch, rate]);
+            assert_eq!(host.fill(fmi2GetDerivatives), twin.fill(fmi2GetDerivatives));
+            assert_eq!(
+                names.map(|name| host.get(name)),
+                names.map(|name| twin.get(name))
+            );
+        }
+        // All or nothing.
+        for bad in [f64::NAN, f64::INFINITY] {
+            let values = [1.1, 0.3, bad];
+            let c = host.component;
+            assert_eq!(
+                unsafe { fmi2SetReal(c, references.as_ptr(), 3, values.as_ptr()) },
+                ERROR
+            );
+            assert!(
+                host.last_line().contains("lambda_dot"),
+                "{}",
+                host.last_line()
+            );
+            assert_eq!(host.fill(fmi2GetContinuousStates), [25.0, 0.0]);
+            assert_eq!(host.get("phi"), 0.4);
+        }
+        assert_eq!(host.set("lambda3", 0.5), ERROR);
+    }
+    for (kind, phase) in [
+        (EXCHANGE, "initialization"),
+        (EXCHANGE, "terminated"),
+        (fmi2Type_fmi2CoSimulation, "initialization"),
+        (fmi2Type_fmi2CoSimulation, "stepping"),
+    ] {
+        let host = Host::in_phase_of(kind, phase);
+        assert_eq!(host.set("lambda", 1.1), ERROR, "{phase}");
+    }
+}
+
+/// Differences of what is read after a state was set are the directional derivatives.
+#[test]
+fn jacobians_follow_states_set_by_value_reference() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    for (name, value) in [("phi", 0.4), ("S", 0.2), ("c", 3.0), ("E_s", 0.1)] {
+        assert_eq!(host.set(name, value), OK);
+    }
+    for (known, at) in [("lambda", 1.25), ("lambda_dot", 0.3)] {
+        assert_eq!(host.set("lambda", 1.25), OK);
+        assert_eq!(host.set("lambda_dot", 0.3), OK);
+        let mut slope = f64::NAN;
+        let (unknown, by) = (reference("lambda_ddot"), reference(known));
+        unsafe {
+            let c = host.component;
+            fmi2GetDirectionalDerivative(c, &unknown, 1, &by, 1, &1.0, &mut slope);
+        }
+        let [below, above] = [at - 1e-5, at + 1e-5].map(|value| {
+            assert_eq!(host.set(known, value), OK);
+            host.get("lambda_ddot")
+        });
+        let difference = (above - below) / 2e-5;
+        assert!(
+            (slope - difference).abs() < 1e-9,
+            "{slope} and {difference}"
+        );
+    }
+}
+
+/// A state in the shape of a sine, λ = 1.2 + 0.1 sin t, sampled so that no sample is
+/// an extreme: what lies between completed steps is found on their cubic.
+#[test]
+fn extremes_are_recorded_at_completed_steps() {
+    let recorded = |steps: u32, window: Option<f64>| {
+        let host = Host::in_phase_of(EXCHANGE, "initialization");
+        let c = host.component;
+        unsafe {
+            assert_eq!(fmi2SetBoolean(c, &reference("record_extremes"), 1, &1), OK);
+            assert_eq!(fmi2ExitInitializationMode(c), OK);
+        }
+        let at = |time: f64| [1.2 + 0.1 * time.sin(), 0.1 * time.cos()];
+        assert_eq!(host.set("lambda", at(0.3)[0]), OK);
+        assert_eq!(host.set("lambda_dot", at(0.3)[1]), OK);
+        assert_eq!(unsafe { fmi2EnterContinuousTimeMode(c) }, OK);
+        let h = 6.5 / f64::from(steps);
+        for k in 1..=steps {
+            let time = h * f64::from(k);
+            // A trial that is given up leaves nothing.
+            host.put(time, [3.0, 0.1]);
+            host.put(time, at(0.3 + time));
+            assert_eq!(
+                unsafe { fmi2CompletedIntegratorStep(c, 1, &mut 0, &mut 0) },
+                OK
+            );
+            if let Some(window) = window.filter(|_| k == steps / 2) {
+                assert_eq!(host.set("extremes_window", window), OK);
+            }
+        }
+        ["lambda_lowest", "lambda_highest"].map(|name| host.get(name))
+    };
+    let error = |steps: u32| {
+        let [lowest, highest] = recorded(steps, None);
+        (lowest - 1.0).abs().max((highest - 1.3).abs())
+    };
+    // From λ = 1 on, where it stood at the start.
+    assert!((recorded(20, None)[1] - 1.3).abs() < 1e-4);
+    let (coarse, fine) = (error(20), error(80));
+    assert!(fine < 1e-6 && coarse < 1e-3, "{coarse} and {fine}");
+    // From 3.55 on: the largest is that at the end, the smallest 1.1 of the sine.
+    let [lowest, highest] = recorded(80, Some(1.0));
+    assert!((lowest - 1.1).abs() < 1e-6, "{lowest}");
+    assert!(
+        (highest - (1.2 + 0.1 * 6.8_f64.sin())).abs() < 1e-12,
+        "{highest}"
+    );
+}
+
+/// The phase of the built-in voltage runs on where its frequency changes.
+#[test]
+fn a_changed_frequency_leaves_the_present_voltage_as_it_is() {
+    for kind in [EXCHANGE, fmi2Type_fmi2CoSimulation] {
+        let phase = if kind == EXCHANGE {
+            "continuous"
+        } else {
+            "stepping"
+        };
+        let host = Host::in_phase_of(kind, phase);
+        let (mut time, mut angle, mut frequency) = (0.0, 0.7, 0.5);
+        for (name, value) in [("phi_ac", 0.3), ("phase_ac", 0.7)] {
+            assert_eq!(host.set(name, value), OK);
+        }
+        for k in 0..100 {
+            assert_eq!(host.set("omega_ac", frequency), OK);
+            let expected = 0.3 * f64::sin(angle);
+            let found = host.get("phi_total");
+            assert!((found - expected).abs() < 1e-13, "{found} and {expected}");
+            let step = 1.0 + f64::from(k % 7);
+            if kind == EXCHANGE {
+                host.put(time + step, [1.0, 0.0]);
+            } else {
+                assert_eq!(host.step(time, step), OK);
+            }
+            time += step;
+            angle += frequency * step;
+            frequency = 0.1 + f64::from(k * k % 11) / 8.0;
+        }
+        assert_eq!(host.get("phase_ac"), 0.7);
+    }
+}

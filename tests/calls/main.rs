@@ -7,6 +7,7 @@
 
 mod derivatives;
 mod exchange;
+mod extremes;
 mod host;
 mod masters;
 mod random;

@@ -5,7 +5,8 @@
 use std::ptr::{null, null_mut};
 
 use DielectricElastomerActuator::*;
-use dielectric_elastomer_actuator::nondimensional::VARIABLES;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES, value_reference};
 use dielectric_elastomer_actuator::variables::{Access, Kind};
 use fmi::fmi2::binding::*;
 use serde::{Deserialize, Serialize};
@@ -306,6 +307,14 @@ impl Stage {
     }
 
     /// Sets all or none, and only what may be set.
+    /// Whether the actuator for model exchange has collapsed: it may then be held.
+    fn held(&self) -> bool {
+        let (host, collapsed) = (&self.hosts[1], value_reference("collapsed"));
+        let (reference, mut value) = (collapsed.expect("an output"), 0.0);
+        unsafe { fmi2GetReal(host.component, &reference, 1, &mut value) };
+        value == 1.0
+    }
+
     fn set_real(&self, who: usize, values: &[(u32, f64)]) -> Result<fmi2Status, String> {
         let host = &self.hosts[who];
         let (references, numbers): (Vec<u32>, Vec<f64>) = values.iter().copied().unzip();
@@ -313,13 +322,16 @@ impl Stage {
         let status = unsafe { fmi2SetReal(host.component, from, count, numbers.as_ptr()) };
         if status == OK {
             for (place, &(reference, number)) in values.iter().enumerate() {
-                let may_be_set = VARIABLES.get(reference as usize).is_some_and(|row| {
-                    matches!(row.kind, Kind::Real { .. })
-                        && !matches!(row.access, Access::Result { .. })
-                        && row.check(number).is_ok()
-                });
+                let state = who == 1 && Nondimensional::STATES.contains(&reference);
+                let row = VARIABLES.get(reference as usize);
+                let may_be_set = state && number.is_finite()
+                    || row.is_some_and(|row| {
+                        matches!(row.kind, Kind::Real { .. })
+                            && !matches!(row.access, Access::Result { .. })
+                            && row.check(number).is_ok()
+                    });
                 demand(may_be_set, "a value was set that may not be")?;
-                let again = references[place + 1..].contains(&reference);
+                let again = references[place + 1..].contains(&reference) || state && self.held();
                 let mut now = number;
                 unsafe { fmi2GetReal(host.component, &reference, 1, &mut now) };
                 demand(again || now == number, "a value was not set")?;

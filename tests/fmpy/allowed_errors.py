@@ -50,6 +50,9 @@ ESCAPE = 1e-11
 SAME_MOTION = 1e-11
 """Two runs over at most 100 time units that solve the same problem through different calls."""
 
+CHIRP = 1e-9
+"""λ and dλ/dt over 300 changes of the frequency against DOP853 at a relative tolerance of 1e-12 in each step."""
+
 CVODE = 1e-6
 """λ and dλ/dt by CVODE (BDF of order 1 to 5) at its tolerance of 1e-10 over 100 time units, some 30 periods where
 c = 2: its local errors add up to 5e-7 there, 2e-8 in the slow scenes, and fall with its tolerance."""

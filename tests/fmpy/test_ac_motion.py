@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import allowed_errors as allowed
 import references
@@ -63,3 +64,32 @@ def test_an_input_that_is_a_function_of_time_approaches_the_drive(actuator):
     ]
     assert abs(errors[1]) < 1e-4
     assert errors[0] / errors[1] == pytest.approx(2, rel=0.05)
+
+
+def test_a_chirp_keeps_its_phase(actuator):
+    """The frequency rises at each of 300 steps from t = 1000 on; DOP853 integrates Eq. 16 (γ_s = τ_s = E_s = 0) with
+    the voltage φ_a sin θ, whose phase θ is one more state, θ' = ω."""
+    begin, step, amplitude = 1000.0, 0.7, 0.25
+    frequencies = 0.05 + 0.001 * np.arange(300)
+
+    def slope(_, state, frequency):
+        stretch, rate, angle = state
+        force = amplitude**2 * math.sin(angle) ** 2 * stretch**3 - stretch + stretch**-5 + 6 * rate**2 * stretch**-7
+        return [rate, force / (100.0 + 2.0 * stretch**-6), frequency]
+
+    def follow(state, span, frequency):
+        end = solve_ivp(slope, (0.0, span), state, "DOP853", args=(frequency,), rtol=1e-12, atol=1e-14)
+        return end.y[:, -1]
+
+    actuator.start({"phi_ac": amplitude, "omega_ac": 0.05, "phase_ac": 0.4}, tolerance=allowed.TOLERANCE)
+    actuator.advance(begin)
+    state = np.array([actuator.get("lambda"), actuator.get("lambda_dot"), 0.05 * begin + 0.4])
+    worst = 0.0
+    for frequency in frequencies:
+        actuator.set({"omega_ac": frequency})
+        assert actuator.get("phi_total") == pytest.approx(amplitude * math.sin(state[2]), abs=1e-11)
+        actuator.advance(step)
+        state = follow(state, step, frequency)
+        worst = max(worst, abs(actuator.get("lambda") - state[0]), abs(actuator.get("lambda_dot") - state[1]))
+    assert actuator.get("phase_ac") == 0.4
+    assert worst <= allowed.CHIRP, worst

@@ -69,7 +69,7 @@ def outside(variable):
 
 
 def test_every_input_and_parameter_declares_both_limits(description):
-    assert len(settable(description)) == 13
+    assert len(settable(description)) == 15
     for variable in settable(description):
         assert variable.min is not None and variable.max is not None, variable.name
 
@@ -93,6 +93,27 @@ def test_tunable_value_out_of_range_between_steps(instantiate, description, refe
         for value, limit in outside(variable):
             text = refused(slave, description, slave.setReal, [variable.valueReference], [value])
             assert variable.name in text and {value, limit} <= set(numbers_in(text))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "conversion"),
+    [
+        ("phi", 1000.0, "volts*sqrt(eps/mu)/H"),
+        ("phi_ac", 230.0, "volts*sqrt(eps/mu)/H"),
+        ("S", 1e5, "force/(mu*H*L)"),
+        ("phase_ac", 90.0, "degrees*pi/180"),
+        ("omega_ac", 6283.0, "radians per second*H*sqrt(rho/(12*mu))"),
+    ],
+)
+def test_a_value_in_a_unit_names_the_conversion(instantiate, description, reference_of, name, value, conversion):
+    slave = initializing(instantiate())
+    assert conversion in refused(slave, description, slave.setReal, [reference_of[name]], [value])
+
+
+def test_numbers_in_messages_are_short(instantiate, description, reference_of):
+    slave = initializing(instantiate())
+    text = refused(slave, description, slave.setReal, [reference_of["phi"]], [1e200])
+    assert "phi = 1e200" in text and len(text) < 200
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])

@@ -47,6 +47,35 @@ def test_capabilities_are_declared(description):
     assert not slave.canRunAsynchronuously
 
 
+def test_what_connects_is_real(description):
+    """Hosts that know neither Booleans nor enumerations can run it."""
+    for variable in description.modelVariables:
+        if variable.causality in ("input", "output"):
+            assert variable.type == "Real", variable.name
+
+
+def test_the_stretch_has_a_name_that_is_no_keyword(description, reference_of):
+    assert reference_of["stretch"] == reference_of["lambda"]
+    (alias,) = [variable for variable in description.modelVariables if variable.name == "stretch"]
+    assert (alias.type, alias.causality, alias.start, alias.derivative) == ("Real", "local", None, None)
+    references = [v.valueReference for v in description.modelVariables if v.name != "stretch"]
+    assert len(set(references)) == len(references)
+
+
+def test_a_variable_that_may_be_infinite_says_so_and_declares_no_maximum(actuator, description):
+    actuator.start({"E_s": 0.2})
+    infinite = {v.name for v in description.modelVariables if math.isinf(actuator.get(v.name))}
+    assert infinite == {"phi_pull_in", "phi_pull_in_static", "pull_in_margin", "pull_in_time"}
+    for variable in description.modelVariables:
+        says_so = "+inf, which JSON cannot hold" in variable.description
+        assert says_so == (variable.name in infinite), variable.name
+        assert not says_so or variable.max is None, variable.name
+
+
+def test_no_tolerance_is_meant_for_two_integrators(description):
+    assert description.defaultExperiment.tolerance is None
+
+
 def test_states_may_jump_at_a_collapse(fmu_path):
     """FMPy 0.3.32 does not read this attribute of FMI 2."""
     with zipfile.ZipFile(fmu_path) as archive:
@@ -63,8 +92,8 @@ def test_model_structure_lists_states_and_dependencies(description):
     def dependencies(unknowns):
         return {u.variable.name: {known.name for known in u.dependencies} for u in unknowns}
 
-    assert dependencies(description.outputs) == {"lambda": {"lambda"}, "lambda3": {"lambda"}, "pulled_in": set()}
+    assert dependencies(description.outputs) == {"lambda": {"lambda"}, "lambda3": {"lambda"}, "collapsed": set()}
     assert dependencies(description.derivatives)["lambda_ddot"] == {"phi", "S", "lambda", "lambda_dot"}
     initial = dependencies(description.initialUnknowns)
-    assert set(initial) == {"lambda", "lambda3", "pulled_in", "lambda_dot", "lambda_ddot"}
+    assert set(initial) == {"lambda", "lambda3", "collapsed", "lambda_dot", "lambda_ddot"}
     assert initial["lambda3"] == {"lambda_start"}

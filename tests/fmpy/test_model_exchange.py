@@ -76,3 +76,57 @@ def test_no_arguments_at_all(fmu_path):
     """FMPy takes co-simulation where it has the choice; forward Euler is the other solver that it has."""
     assert simulate_fmu(str(fmu_path), fmi_type="ModelExchange")["lambda"][-1] == 1.0
     assert simulate_fmu(str(fmu_path), fmi_type="ModelExchange", solver="Euler")["lambda"][-1] == 1.0
+
+
+def test_a_varying_input_at_default_settings(fmu_path):
+    """CVODE, at the tolerance that FMPy gives it where the description names none."""
+    time = np.linspace(0.0, 100.0, 101)
+    signals = np.array(
+        [(t, 0.3 + 0.2 * np.sin(0.2 * t), 0.1) for t in time], dtype=[("time", float), ("phi", float), ("S", float)]
+    )
+    theirs = simulate_fmu(str(fmu_path), fmi_type="ModelExchange", input=signals, stop_time=100.0)
+    exact = run(fmu_path, "ModelExchange", {}, 1e-9, input=signals)
+    assert theirs["time"][-1] == 100.0
+    assert np.ptp(exact["lambda"]) > 0.5
+    # FMPy's own default is 1e-5 in each step.
+    assert abs(theirs["lambda"][-1] - exact["lambda"][-1]) < 0.05
+
+
+def test_extremes_are_recorded(fmu_path):
+    names = ["lambda_lowest", "lambda_highest", "lambda3_lowest", "lambda3_highest"]
+    scene = {**SCENES["alternating voltage"], "record_extremes": True}
+    ours, theirs = (
+        simulate_fmu(
+            str(fmu_path), fmi_type=kind, start_values=scene, stop_time=100.0, relative_tolerance=1e-8, output=names
+        )
+        for kind in ("CoSimulation", "ModelExchange")
+    )
+    for name in names:
+        assert ours[name][-1] > 0.5
+        assert theirs[name][-1] == pytest.approx(ours[name][-1], abs=1e-6), name
+
+
+def test_extremes_start_anew_at_an_event(fmu_path):
+    window = np.array(
+        [(0.0, 1.0), (88.0, 1.0), (88.0, 2.0), (100.0, 2.0)], dtype=[("time", float), ("extremes_window", float)]
+    )
+    scene = SCENES["alternating voltage"]
+    ours, theirs = (
+        simulate_fmu(
+            str(fmu_path),
+            fmi_type=kind,
+            start_values=scene,
+            stop_time=100.0,
+            output_interval=0.1,
+            relative_tolerance=1e-9,
+            input=window,
+            output=["lambda", "lambda_lowest", "lambda_highest"],
+            record_events=False,
+        )
+        for kind in ("CoSimulation", "ModelExchange")
+    )
+    inside = ours["lambda"][ours["time"] > 87.99]
+    for result in (ours, theirs):
+        assert result["lambda_highest"][-1] == pytest.approx(inside.max(), abs=1e-5)
+        assert result["lambda_lowest"][-1] == pytest.approx(inside.min(), abs=1e-5)
+    assert ours["lambda_highest"][-1] < ours["lambda"].max() - 1e-2

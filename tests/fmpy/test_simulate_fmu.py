@@ -15,7 +15,7 @@ REFERENCE_SET = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 def test_nothing_but_start_values(fmu_path):
     result = simulate_fmu(str(fmu_path), start_values={**REFERENCE_SET, "phi": 0.6}, stop_time=500, output_interval=25)
     reference = references.trajectory("case_a")
-    assert result.dtype.names == ("time", "lambda", "lambda3", "pulled_in")
+    assert result.dtype.names == ("time", "lambda", "lambda3", "collapsed")
     assert result["time"] == pytest.approx(reference["t"])
     assert np.abs(result["lambda"] - reference["lam"]).max() <= allowed.TRAJECTORY_DEFAULT
 
@@ -24,7 +24,7 @@ def test_no_arguments_at_all(fmu_path):
     """The default scene has no voltage: the actuator stays at rest."""
     result = simulate_fmu(str(fmu_path))
     assert len(result) > 1
-    assert (result["lambda"] == 1).all() and not result["pulled_in"].any()
+    assert (result["lambda"] == 1).all() and not result["collapsed"].any()
 
 
 def test_input_signal_with_a_jump(fmu_path):
@@ -154,8 +154,8 @@ def test_two_instances_at_once_do_not_disturb_each_other(instantiate, reference_
 def test_hold_runs_to_the_stop_time(fmu_path):
     result = simulate_fmu(str(fmu_path), start_values={"phi": 0.7}, stop_time=60.0, output_interval=0.5)
     assert result["time"][-1] == 60.0
-    assert result["pulled_in"][-1] and result["lambda"][-1] == 10.0
-    assert not result["pulled_in"][0]
+    assert result["collapsed"][-1] == 1.0 and result["lambda"][-1] == 10.0
+    assert result["collapsed"][0] == 0.0
 
 
 def test_terminate_ends_the_run_at_the_collapse(fmu_path, instantiate, reference_of):

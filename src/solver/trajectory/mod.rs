@@ -118,6 +118,15 @@ impl Trajectory {
         self
     }
 
+    /// Forgets the extremes so far: they are recorded from the present on, or not
+    /// any more.
+    pub fn record_extremes_anew(&mut self, recording: bool) {
+        self.extremes = recording.then(|| Extremes::at(self.position()));
+        // Along an orbit the motion turns where the orbit does only.
+        self.recorded = self.orbit.map_or(self.now, |orbit| orbit.second_turn());
+        self.slack = 0.0;
+    }
+
     /// The extremes up to the present, where they are recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
