@@ -257,9 +257,11 @@ $(INSTALLED): requirements.txt
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
 	@touch $@
 
-$(HOSTS_INSTALLED): tests/hosts/requirements.txt $(INSTALLED)
+$(HOSTS_INSTALLED): tests/hosts/requirements.txt tests/hosts/requirements-cofmupy.txt $(INSTALLED)
 	$(call heading,Python packages of other hosts)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/hosts/requirements.txt
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --upgrade --target $(VENV)/cofmupy \
+	--requirement tests/hosts/requirements-cofmupy.txt
 	@touch $@
 
 # The Python package as it stands in the checkout, with the FMU of target/fmu.

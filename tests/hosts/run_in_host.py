@@ -2,7 +2,9 @@
 communication point: λ and λ3. A process of its own for each host: one that crashes
 takes nothing with it. The communication step is a power of two, so that every host means the same times."""
 
+import contextlib
 import ctypes
+import importlib.util
 import json
 import math
 import subprocess
@@ -18,6 +20,8 @@ SWITCH = 120
 PHI_THEN = 0.25
 OUTPUTS = ("lambda", "lambda3")
 MODEL = "DielectricElastomerActuator"
+COFMUPY = Path(sys.prefix) / "cofmupy"
+"""cofmupy with the FMPy that it needs."""
 
 Rows = list[list[float]]
 
@@ -157,6 +161,63 @@ def with_fmu_manipulation_toolbox(fmu: str) -> Rows:
         return with_fmpy(container, {name: START_VALUES[name] for name in ("phi", "S")})
 
 
+def with_pathsim_fmi(fmu: str) -> Rows:
+    """It reads every output as a Real, and sets every input at each step: what is not connected to 0."""
+    from pathsim import Connection, Simulation
+    from pathsim.blocks import Constant, Source
+    from pathsim_fmi import CoSimulationFMU
+
+    class Recorded(CoSimulationFMU):
+        def _step_fmu(self, time):
+            super()._step_fmu(time)
+            rows.append(self.stretches())
+
+        def stretches(self):
+            return [float(self.outputs[name]) for name in OUTPUTS]
+
+    block = Recorded(fmu, start_values=START_VALUES, dt=STEP)
+    rows = [block.stretches()]
+    phi = Source(lambda time: START_VALUES["phi"] if time < SWITCH * STEP else PHI_THEN)
+    prestress = Constant(START_VALUES["S"])
+    connections = [Connection(phi, block["phi"]), Connection(prestress, block["S"])]
+    simulation = Simulation([phi, prestress, block], connections, dt=STEP, log=False)
+    simulation.run((STEPS - 1) * STEP)
+    return rows
+
+
+def with_cofmupy(fmu: str) -> Rows:
+    """It sets and reads everything as a Real, and needs an older FMPy: see the Makefile."""
+    sys.path.insert(0, str(COFMUPY))
+    from cofmupy.coordinator import Coordinator
+
+    voltage = {"0": START_VALUES["phi"], str(SWITCH * STEP): PHI_THEN}
+    configuration = {
+        "fmus": [{"id": "actuator", "path": fmu, "initialization": START_VALUES}],
+        "connections": [
+            {
+                "source": {"type": "literal", "values": voltage, "interpolation": "previous"},
+                "target": [{"id": "actuator", "variable": "phi"}],
+            }
+        ],
+        "cosim_method": "jacobi",
+        "data_storages": [],
+    }
+    coordinator = Coordinator()
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(sys.stderr):
+        path = Path(folder) / "configuration.json"
+        path.write_text(json.dumps(configuration))
+        coordinator.start(str(path))
+
+        def row():
+            return [coordinator.get_variable(("actuator", name))[0] for name in OUTPUTS]
+
+        rows = [row()]
+        for _ in range(STEPS):
+            coordinator.do_step(STEP)
+            rows.append(row())
+    return rows
+
+
 def with_fmi(fmu: str) -> Rows:
     """The crate `fmi`, in the program that `cargo test` and ``cargo build --example run_with_fmi`` build."""
     program = Path(__file__).resolve().parents[2] / "target/debug/examples/run_with_fmi"
@@ -173,7 +234,17 @@ HOSTS = {
     "ecospy": with_ecospy,
     "libcosimpy": with_libcosimpy,
     "fmu_manipulation_toolbox": with_fmu_manipulation_toolbox,
+    "pathsim_fmi": with_pathsim_fmi,
+    "cofmupy": with_cofmupy,
 }
+
+
+def is_there(host: str) -> bool:
+    """Whether the packages of the host are installed."""
+    if host == "cofmupy":
+        return COFMUPY.is_dir()
+    return host == "fmi" or importlib.util.find_spec(host) is not None
+
 
 if __name__ == "__main__":
     host, fmu = sys.argv[1:]
