@@ -16,7 +16,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 import figure_style as style
 from dielectric_actuator import packed_fmu
 from scenes import Measure
-from sweep import AnotherSweep, Unfinished, grid, sweep
+from sweep import PATIENCE, AnotherSweep, Unfinished, grid, sweep
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "sweep"
 
@@ -28,6 +28,9 @@ def parse(description: str, **counts: int) -> argparse.Namespace:
     parser.add_argument("--workers", type=int, help="processes on this machine (default: one a core)")
     parser.add_argument("--fmu", type=Path, default=packed_fmu(), help="the packed FMU (%(default)s)")
     parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder for the results (%(default)s)")
+    parser.add_argument(
+        "--patience", type=float, default=PATIENCE, help="seconds to wait for a silent cluster (%(default)s)"
+    )
     for name, count in counts.items():
         parser.add_argument(f"--{name}", type=int, default=count, help="values of this axis (%(default)s)")
     style.apply()
@@ -44,6 +47,7 @@ def run(arguments: argparse.Namespace, measure: Measure, axes: dict[str, Sequenc
             cluster=arguments.scheduler,
             workers=arguments.workers,
             fmu=arguments.fmu,
+            patience=arguments.patience,
         )
     except (AnotherSweep, Unfinished) as reason:
         sys.exit(f"error: {reason}")

@@ -10,6 +10,9 @@ Parquet file; a sweep that was stopped goes on from these. The result holds one 
 its parameters, its results, and the reason if it failed. The FMU and the modules that a worker needs
 (the one that defines the measure too) are sent to it, so that a worker on another machine needs only the
 package `dielectric_actuator` with its extra `sweep`.
+
+Nothing waits for ever: where the scheduler or every worker is lost, or the network to them, the sweep ends
+after `patience` seconds without a sign of life, with what is done kept.
 """
 
 from __future__ import annotations
@@ -17,17 +20,19 @@ from __future__ import annotations
 import hashlib
 import inspect
 import itertools
+import queue
 import time
 import uuid
-from collections.abc import Mapping, Sequence
-from contextlib import contextmanager
+from asyncio import CancelledError
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client, Future, LocalCluster
 from distributed.deploy import Cluster
 from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 
@@ -39,12 +44,16 @@ BATCH = 100
 """Scenes that travel together: many enough to hide the millisecond that the scheduler takes for a task."""
 
 
+PATIENCE = 60.0
+"""Seconds without a sign of life after which a cluster counts as lost."""
+
+
 class AnotherSweep(ValueError):
     """The output holds results of other scenes, another measure or another FMU."""
 
 
 class Unfinished(RuntimeError):
-    """Some batches were lost, with the machine they ran on for example; the same call goes on from the rest."""
+    """Some batches were lost, or the whole cluster; what is done is kept, and the same call goes on from there."""
 
 
 def grid(**axes: Sequence[float]) -> dict[str, np.ndarray]:
@@ -62,13 +71,14 @@ def sweep(
     workers: int | None = None,
     batch: int = BATCH,
     fmu: Path | None = None,
+    patience: float = PATIENCE,
 ) -> pa.Table:
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
     `scenes` holds a column of start values for each varied variable. `cluster` is the address of a Dask
     scheduler, or one of Dask's cluster objects; without it `workers` processes are started here (default:
-    one a processor core). Raises
-    `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost.
+    one a processor core). Raises `AnotherSweep` if `output` holds the results of one, `Unfinished` if
+    batches were lost or the cluster gave no sign of life for `patience` seconds.
     """
     scenes = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
     fmu = fmu or packed_fmu()
@@ -78,26 +88,88 @@ def sweep(
     progress = Progress(count, count - len(pending))
     lost: list[str] = []
     if len(pending):
-        with _client(cluster, workers) as client:
-            _equip(client, measure, fmu)
-            progress.begin(len(client.scheduler_info(n_workers=-1)["workers"]))
+        with _client(cluster, workers, patience) as client:
+            heartbeats = Heartbeats(client, patience)
+            heartbeats.bounded(_equip, client, measure, fmu)
+            progress.begin(heartbeats.workers())
             batches = {}
             for start in range(0, len(pending), batch):
                 numbers = pending[start : start + batch]
                 rows = [{name: float(column[k]) for name, column in scenes.items()} for k in numbers]
                 batches[client.submit(worker_side.run_batch, measure, rows, pure=False)] = (numbers, rows)
-            for future in as_completed(batches):
+            for future in heartbeats.as_completed(list(batches)):
                 numbers, rows = batches.pop(future)
-                if future.status != "finished":
-                    lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {future.exception()}")
+                try:
+                    found = future.result(timeout=patience)
+                except (Exception, CancelledError) as reason:  # whatever lost one batch, the others go on
+                    heartbeats.check()
+                    lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {reason or type(reason).__name__}")
                     continue
-                found = future.result()
                 results.add(numbers, rows, found)
                 progress.advance([(k, row["failure"]) for k, row in zip(numbers, found) if row["failure"]], len(found))
     progress.close()
     if lost:
         raise Unfinished("\n".join([f"{len(lost)} batches were lost; run again to go on from the others", *lost[:5]]))
     return results.complete()
+
+
+class Heartbeats:
+    """Signs of life of a cluster: the heartbeats of its workers, as its scheduler tells of them."""
+
+    def __init__(self, client: Client, patience: float):
+        self._client, self._patience = client, patience
+        self._heard: dict[str, float] = {}
+        self._last = time.monotonic()
+
+    def bounded(self, coroutine, *arguments):
+        """What `coroutine` returns; Unfinished if the cluster does not answer in time."""
+        try:
+            return self._client.sync(coroutine, *arguments, callback_timeout=self._patience)
+        except (OSError, TimeoutError) as reason:
+            raise Unfinished(
+                f"the scheduler does not answer ({reason or type(reason).__name__}); what is done is kept, run again to "
+                "go on from there"
+            ) from None
+
+    def workers(self) -> int:
+        """How many workers the scheduler knows; notes which have been heard of since the last call."""
+        heard = self.bounded(_last_seen, self._client)
+        if any(self._heard.get(worker) != moment for worker, moment in heard.items()):
+            self._last = time.monotonic()
+        self._heard = heard
+        return len(heard)
+
+    def check(self) -> None:
+        """Unfinished if no worker has been heard of for too long."""
+        workers = self.workers()
+        if (silence := time.monotonic() - self._last) > self._patience:
+            raise Unfinished(
+                f"none of {workers} workers has been heard of for {silence:.0f} s; what is done is kept, run again to "
+                "go on from there"
+            )
+
+    def as_completed(self, futures: Sequence[Future]) -> Iterator[Future]:
+        """Each future when it is done, well or not; Unfinished when nothing is heard of the cluster any more."""
+        done: queue.SimpleQueue[Future] = queue.SimpleQueue()
+        for future in futures:
+            future.add_done_callback(done.put)
+        returned = 0
+        while returned < len(futures):
+            try:
+                future = done.get(timeout=min(5.0, self._patience / 4))
+            except queue.Empty:
+                self.check()
+            else:
+                returned += 1
+                yield future
+
+
+async def _last_seen(client: Client) -> dict[str, float]:
+    """When the scheduler last heard of each worker, by the scheduler's clock."""
+    if client.scheduler is None:
+        raise OSError("the connection is closed")
+    identity = await client.scheduler.identity(n_workers=-1)
+    return {address: worker["last_seen"] for address, worker in identity["workers"].items()}
 
 
 class Progress:
@@ -219,13 +291,20 @@ def _unwrapped(measure: worker_side.Measure) -> tuple[worker_side.Measure, dict]
 
 
 @contextmanager
-def _client(cluster: str | Cluster | None, workers: int | None):
+def _client(cluster: str | Cluster | None, workers: int | None, patience: float):
     if cluster is None:
-        with local_cluster(workers) as own, Client(own) as client:
+        with local_cluster(workers) as own, _client(own, None, patience) as client:
             yield client
-    else:
-        with Client(cluster) as client:
-            yield client
+        return
+    try:
+        client = Client(cluster, timeout=patience)
+    except (OSError, TimeoutError) as reason:
+        raise Unfinished(f"no scheduler answers at {cluster}: {reason}") from None
+    try:
+        yield client
+    finally:
+        with suppress(TimeoutError, OSError):  # a lost scheduler says no farewell
+            client.close(timeout=min(5.0, patience))
 
 
 def local_cluster(workers: int | None) -> LocalCluster:
@@ -233,7 +312,7 @@ def local_cluster(workers: int | None) -> LocalCluster:
     return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
 
 
-def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
+async def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
     """Give each worker, of now and later, the modules and the FMU."""
     own = inspect.getmodule(_unwrapped(measure)[0])
     for module in dict.fromkeys((worker_side, own)):
@@ -242,6 +321,6 @@ def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
             name = f"{module.__name__}-{uuid.uuid4()}"
             # a scheduler in this process has the modules already, and must not load them a second time
             in_this_process = client.cluster is not None
-            client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
-            client.register_plugin(UploadFile(module.__file__), name=name)
-    client.register_plugin(worker_side.CarryFmu(fmu.name, fmu.read_bytes()))
+            await client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
+            await client.register_plugin(UploadFile(module.__file__), name=name)
+    await client.register_plugin(worker_side.CarryFmu(fmu.name, fmu.read_bytes()))

@@ -1,6 +1,7 @@
 """Measures in a file of their own, as a user of the sweep example writes them."""
 
 import os
+import time
 
 
 def whose(actuator, scene):
@@ -13,4 +14,10 @@ def fatal(actuator, scene):
     """Takes its worker down with the scene phi = 0.5."""
     if scene["phi"] == 0.5:
         os._exit(1)
+    return {"twice": 2 * scene["phi"]}
+
+
+def slow(actuator, scene):
+    """Takes a fifth of a second."""
+    time.sleep(0.2)
     return {"twice": 2 * scene["phi"]}

@@ -1,11 +1,9 @@
 """The sweep example, on a Dask cluster whose processes know nothing of this checkout, and on its own workers."""
 
-import json
 import os
 import re
 import subprocess
 import sys
-import time
 from functools import partial
 from pathlib import Path
 
@@ -13,9 +11,9 @@ import dask
 import numpy as np
 import pyarrow.parquet as parquet
 import pytest
-from distributed import Client
 
 import command
+import dask_cluster
 import references
 import scenes
 import sweep as engine
@@ -29,45 +27,9 @@ WORKERS = 2
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory):
-    """The address of a scheduler with two workers, started by Dask's own commands in a folder of their own."""
-    folder = tmp_path_factory.mktemp("cluster")
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    here = {"cwd": folder, "env": environment, "stdout": subprocess.DEVNULL}
-    found = folder / "scheduler.json"
-    where = ["--scheduler-file", str(found), "--no-dashboard"]
-    one = ["--host", "127.0.0.1"]
-    with (folder / "log").open("w") as log:
-        commands = (
-            [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", *one, *where],
-            [
-                sys.executable,
-                "-m",
-                "distributed.cli.dask_worker",
-                "--nworkers",
-                f"{WORKERS}",
-                "--nthreads",
-                "1",
-                *where,
-            ],
-        )
-        started = [subprocess.Popen(words, stderr=log, **here) for words in commands]
-        try:
-            yield wait_for_address(found, started, folder / "log")
-        finally:
-            for process in reversed(started):
-                process.terminate()
-                process.wait(timeout=30)
-
-
-def wait_for_address(path, processes, log) -> str:
-    deadline = time.monotonic() + 60
-    while not (path.exists() and path.stat().st_size):
-        assert all(process.poll() is None for process in processes) and time.monotonic() < deadline, log.read_text()
-        time.sleep(0.05)
-    address = json.loads(path.read_text())["address"]
-    with Client(address) as client:
-        client.wait_for_workers(WORKERS, timeout=60)
-    return address
+    """The address of a scheduler with two workers."""
+    with dask_cluster.started(tmp_path_factory.mktemp("cluster"), WORKERS) as (address, _, _):
+        yield address
 
 
 def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):

@@ -1,0 +1,71 @@
+"""A sweep that loses its workers, its scheduler or the network ends in time, with what is done kept.
+
+A process that is stopped (SIGSTOP) is to all others one that the network no longer reaches: its connections stay
+open and nothing comes from them.
+"""
+
+import re
+import signal
+import threading
+import time
+
+import numpy as np
+import pyarrow.parquet as parquet
+import pytest
+
+import dask_cluster
+import sweep as engine
+from sweep_measures import slow
+
+PATIENCE = 8.0
+SCENES = 60
+
+
+@pytest.mark.parametrize(
+    ("lost", "how", "reason"),
+    [
+        ("workers", signal.SIGKILL, "none of 0 workers has been heard of"),
+        ("scheduler", signal.SIGKILL, "the scheduler does not answer"),
+        ("scheduler", signal.SIGSTOP, "the scheduler does not answer"),
+        ("workers", signal.SIGSTOP, "workers has been heard of"),
+    ],
+    ids=["workers-killed", "scheduler-killed", "scheduler-unreachable", "workers-unreachable"],
+)
+def test_a_loss_ends_the_sweep_in_time_with_what_is_done_kept(fmu_path, tmp_path, capsys, lost, how, reason):
+    output = tmp_path / "lost.parquet"
+    parts = tmp_path / "lost.parquet.parts"
+    columns = engine.grid(phi=np.linspace(0.1, 0.6, SCENES))
+    moment = []
+
+    def lose(processes):
+        while len(list(parts.glob("*.parquet"))) < 3:
+            time.sleep(0.02)
+        for process in processes:
+            process.send_signal(how)
+        moment.append(time.monotonic())
+
+    with dask_cluster.started(tmp_path, 2) as (address, scheduler, workers):
+        processes = [scheduler] if lost == "scheduler" else workers
+        threading.Thread(target=lose, args=[processes], daemon=True).start()
+        with pytest.raises(engine.Unfinished, match=reason):
+            engine.sweep(slow, columns, output, cluster=address, batch=2, fmu=fmu_path, patience=PATIENCE)
+        assert time.monotonic() - moment[0] < 10 * PATIENCE
+    kept = [scene for part in parts.glob("*.parquet") for scene in parquet.read_table(part)["scene"].to_pylist()]
+    assert 6 <= len(kept) < SCENES
+
+    capsys.readouterr()
+    table = engine.sweep(slow, columns, output, workers=1, fmu=fmu_path)
+    assert f"going on from {len(kept)}: " in capsys.readouterr().out
+    assert table["twice"].to_pylist() == (2 * columns["phi"]).tolist()
+
+
+def test_a_cluster_without_workers_or_scheduler_is_reported(fmu_path, tmp_path):
+    def run(address):
+        columns, output = engine.grid(phi=[0.1]), tmp_path / "none.parquet"
+        engine.sweep(slow, columns, output, cluster=address, fmu=fmu_path, patience=3.0)
+
+    nobody = pytest.raises(engine.Unfinished, match="none of 0 workers")
+    with dask_cluster.started(tmp_path, 0) as (address, _, _), nobody:
+        run(address)
+    with pytest.raises(engine.Unfinished, match=re.escape("no scheduler answers at tcp://127.0.0.1:1")):
+        run("tcp://127.0.0.1:1")
