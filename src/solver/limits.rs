@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use super::State;
 use super::segment::{PARTS, Segment};
 
 /// The range of positions inside which the motion is followed.
@@ -65,25 +66,30 @@ impl Limits {
     }
 }
 
-/// The offset at which the motion first reaches `level` from below (`sign` 1)
+/// The offset at which the motion first goes through `level` from below (`sign` 1)
 /// or from above (`sign` −1).
 fn contact(segment: &Segment, level: f64, sign: f64) -> Option<f64> {
     let over = |s: &Segment, t: f64| sign * (s.position(t) - level);
     let toward = |s: &Segment, t: f64| sign * s.rate(t);
     let part = segment.length() / PARTS as f64;
+    // The polynomial rounds a start next to the level onto it.
+    let State { position, rate } = segment.start();
+    if sign * (position - level) >= 0.0 && sign * rate > 0.0 {
+        return Some(0.0);
+    }
     for i in 0..PARTS {
-        let (from, to) = (i as f64 * part, (i + 1) as f64 * part);
-        if over(segment, from) >= 0.0 {
-            return Some(from);
-        }
-        let turns = toward(segment, from) > 0.0 && toward(segment, to) < 0.0;
-        let farthest = if turns && over(segment, to) < 0.0 {
-            segment.crossing(from, to, toward)
-        } else {
-            to
+        let (begin, end) = (i as f64 * part, (i + 1) as f64 * part);
+        let [first, last] = [begin, end].map(|t| toward(segment, t));
+        let turn = || segment.crossing(begin, end, toward);
+        // Nothing is gone through on the way back.
+        let farthest = match first > 0.0 && last < 0.0 {
+            true => turn(),
+            false if last >= 0.0 && first.max(last) > 0.0 => end,
+            false => continue,
         };
         if over(segment, farthest) >= 0.0 {
-            return Some(segment.crossing(from, farthest, over));
+            let nearest = if first < 0.0 { turn() } else { begin };
+            return Some(segment.crossing(nearest, farthest, over));
         }
     }
     None

@@ -71,6 +71,12 @@ impl Segment {
         2.0 * self.half
     }
 
+    /// The state at the begin.
+    #[must_use]
+    pub fn start(&self) -> State {
+        self.start
+    }
+
     /// The state at the end, more accurate than the polynomial between.
     #[must_use]
     pub fn end(&self) -> State {

@@ -1,0 +1,71 @@
+//! Where the motion meets a limit, and where it only starts next to one.
+
+use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
+use dielectric_elastomer_actuator::solver::State;
+use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
+use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
+
+const LIMITS: Limits = Limits {
+    lower: 0.5,
+    upper: 1.5,
+};
+
+/// Where the motion from `position` stops within the time 3, under this prestress.
+fn stop(position: f64, rate: f64, prestress: f64) -> Option<(Limit, f64)> {
+    let motion = Motion {
+        coefficients: Coefficients::fold(&Parameters {
+            aspect: 100.0,
+            surface_energy: 0.0,
+            surface_tension: 0.0,
+            surface_elasticity: 0.2,
+        }),
+        drive: Drive::constant(0.0, prestress),
+    };
+    let mut trajectory = Trajectory::new(State { position, rate }, Double::ZERO, LIMITS, 1e-10);
+    for _ in 0..3 {
+        match trajectory.advance(&motion, 1.0) {
+            Ok(Progress::Whole) => (),
+            Ok(Progress::Stopped { limit, .. }) => {
+                return Some((limit, trajectory.time().value()));
+            }
+            Err(failure) => panic!("{failure:?}"),
+        }
+    }
+    None
+}
+
+#[test]
+fn a_start_next_to_a_limit_meets_it_only_on_the_way_out() {
+    let top = 1.5_f64.next_down();
+    let bottom = 0.5_f64.next_up();
+    // The actuator draws back to λ = 1 by itself.
+    assert_eq!(stop(top, 0.0, 0.0), None);
+    assert_eq!(stop(top, -0.1, 0.0), None);
+    assert_eq!(stop(top, -1e-20, 0.0), None);
+    assert_eq!(stop(bottom, 0.0, 0.0), None);
+    assert_eq!(stop(bottom, 0.1, 0.0), None);
+    let at_once = |met: Option<(Limit, f64)>, which| {
+        assert!(
+            matches!(met, Some((limit, time)) if limit == which && time < 1e-6),
+            "{met:?}"
+        );
+    };
+    at_once(stop(top, 0.1, 0.0), Limit::Upper);
+    at_once(stop(top, 0.0, 10.0), Limit::Upper);
+    at_once(stop(bottom, -0.1, 0.0), Limit::Lower);
+    at_once(stop(bottom, 0.0, -100.0), Limit::Lower);
+}
+
+/// Inward first, and back within a part of a piece: rate −1e-9 against an outward force.
+#[test]
+fn a_limit_is_met_after_a_turn_next_to_it() {
+    let acceleration = (10.0 - 1.5 + 1.5_f64.powi(-5) - 0.2 * 1.5 * 1.25 * 5.75)
+        / (100.0 + 2.0 * 1.5_f64.powi(-6));
+    let met = stop(1.5_f64.next_down(), -1e-6, 10.0);
+    let expected = 2e-6 / acceleration;
+    assert!(
+        matches!(met, Some((Limit::Upper, time)) if (time / expected - 1.0).abs() < 1e-3),
+        "{met:?}, {expected:e}"
+    );
+}
