@@ -264,6 +264,10 @@ impl LocalEquation for Damped {
         0.0
     }
 
+    fn load_series(&self, _state: State, _half: f64) -> Option<[f64; 5]> {
+        None
+    }
+
     fn natural_frequency(&self, _state: State) -> f64 {
         1.0
     }

@@ -319,6 +319,10 @@ impl LocalEquation for LocalUnfolded<'_> {
         self.motion.load_frequency()
     }
 
+    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
+        self.motion.load_series(state, half)
+    }
+
     fn natural_frequency(&self, state: State) -> f64 {
         self.motion.natural_frequency(state)
     }
@@ -367,6 +371,10 @@ impl LocalEquation for LocalIdeal<'_> {
 
     fn load_frequency(&self) -> f64 {
         self.0.load_frequency()
+    }
+
+    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
+        self.0.load_series(state, half)
     }
 
     fn natural_frequency(&self, state: State) -> f64 {

@@ -66,6 +66,12 @@ impl Polynomial {
         self.term[1..].iter().fold(0, bits) << 1 == 0
     }
 
+    /// Whether the input is of this degree at most.
+    #[inline(always)]
+    fn is_of_degree(&self, degree: usize) -> bool {
+        self.term[degree + 1..].iter().all(|term| *term == 0.0)
+    }
+
     /// Moves the moment from which its time counts by `shift`.
     #[inline(always)]
     pub fn shift(&mut self, shift: f64) {
@@ -260,6 +266,17 @@ impl Drive {
     }
 }
 
+/// 1, 1/2, 1/3, …
+const INVERSE: [f64; 9] = {
+    let mut inverse = [0.0; 9];
+    let mut k = 0;
+    while k < 9 {
+        inverse[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    inverse
+};
+
 /// A [`Drive`] with its origin of time moved.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalDrive<'a> {
@@ -302,6 +319,53 @@ impl LocalDrive<'_> {
     #[inline(always)]
     pub fn prestress<N: Number>(&self, offset: N) -> N {
         self.input(&self.drive.prestress, offset)
+    }
+
+    /// Bounds of φ² and of the prestress over a time of `half` to either side of its middle,
+    /// which begins at the origin: of the coefficients of u⁴ to u⁸ in their power series in
+    /// u = −1…1. Nothing where both are of a lower degree.
+    #[inline(always)]
+    pub fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
+        let Drive {
+            voltage, prestress, ..
+        } = self.drive;
+        let low = voltage.is_of_degree(1) && prestress.is_of_degree(3);
+        if self.angle.is_none() && (self.shift.is_none() || low) {
+            return None;
+        }
+        let about_middle = |input: &Polynomial| {
+            let mut input = *input;
+            if let Some(shift) = self.shift {
+                input.shift(shift + half);
+            }
+            let mut power = 1.0;
+            input.term.map(|term| {
+                let size = term.abs() * power;
+                power *= half;
+                size
+            })
+        };
+        let mut series = [0.0; 9];
+        series[..=HIGHEST_DERIVATIVE].copy_from_slice(&about_middle(voltage));
+        if self.angle.is_some() {
+            let Harmonic {
+                amplitude,
+                frequency,
+                ..
+            } = self.drive.harmonic;
+            let turn = frequency.abs() * half;
+            let mut size = amplitude.abs();
+            for (k, sum) in series.iter_mut().enumerate() {
+                *sum += size;
+                size *= turn * INVERSE[k];
+            }
+        }
+        let squared = |k: usize| (0..=k).map(|i| series[i] * series[k - i]).sum();
+        let fourth = about_middle(prestress)[4];
+        Some([
+            std::array::from_fn(|k| squared(k + 4)),
+            [fourth, 0.0, 0.0, 0.0, 0.0],
+        ])
     }
 
     /// What the voltage may be for a while, by size.

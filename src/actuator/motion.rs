@@ -148,6 +148,16 @@ impl LocalEquation for LocalMotion<'_> {
         2.0 * self.drive.frequency()
     }
 
+    #[inline(always)]
+    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
+        let [squared, prestress] = self.drive.load_series(half)?;
+        let cube = state.position * state.position * state.position;
+        let mobility = 1.0 / (self.coefficients.inertia + 2.0 / (cube * cube));
+        Some(std::array::from_fn(|k| {
+            mobility * cube.mul_add(squared[k], prestress[k])
+        }))
+    }
+
     /// √|∂λ''/∂λ| with the terms of the stiffness added up by size, since their sum
     /// may vanish.
     #[inline(always)]

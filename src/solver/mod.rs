@@ -100,6 +100,11 @@ pub trait LocalEquation {
         4.0 * std::f64::consts::PI / self.load_frequency()
     }
 
+    /// Bounds of the load's part of f over a step of `half` to either side of its middle, in
+    /// this state: of the coefficients of u⁴ to u⁸ where it is a power series in u, −1 at the
+    /// begin and 1 at the end. Nothing where the load is of a lower degree.
+    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]>;
+
     /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly.
     fn natural_frequency(&self, state: State) -> f64;
 

@@ -19,7 +19,7 @@ const SETTLED_TIGHTLY: f64 = 5e-5;
 
 /// Errors of this part of the position, one in each step, are not seen beside the
 /// rounding of 1e6 steps.
-const UNSEEN: f64 = 1e-19;
+pub const UNSEEN: f64 = 1e-19;
 
 /// Part of the tolerance for what is repeated.
 const REPEATED_SHARE: f64 = 0.001;

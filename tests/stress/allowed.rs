@@ -100,3 +100,14 @@ pub const LEVELS: f64 = 1e-10;
 /// No step may seem to hang; a busy machine is given time. Measured: 0.02 s for
 /// steps of up to 0.01, 1 s for those that are discarded.
 pub const SLOWEST_STEP: Duration = Duration::from_secs(30);
+
+/// Tolerances, times the amplification by the exact motion between communication points:
+/// what is promised.
+pub const TOLERANCES: f64 = 10.0;
+
+/// Inputs, parameters and states at communication points are rounded.
+pub const ROUNDING: f64 = 1e-15;
+
+/// The same for each unit T of time: so much sooner or later is an actuator whose
+/// parameters are rounded.
+pub const ROUNDING_WITH_TIME: f64 = 4.0 * f64::EPSILON;

@@ -5,16 +5,20 @@
 //! with its reason in [`allowed`]. Nothing here may give NaN or hang. What takes
 //! minutes runs in short form unless the environment has `STRESS=long`.
 
+mod accuracy;
 mod allowed;
+mod doubled;
 mod escape;
 mod fold;
 mod independent;
 mod inputs;
 mod levels;
 mod ranges;
+mod scenes;
 mod slave;
 mod steps;
 mod traps;
+mod varying;
 
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
@@ -39,7 +43,7 @@ const WIDE: Limits = Limits {
 fn motion(actuator: &Actuator, load: &Load) -> Motion {
     let [surface_energy, surface_tension, surface_elasticity] = actuator.surface;
     let [amplitude, frequency, phase] = load.harmonic;
-    let mut drive = Drive::constant(load.voltage, load.prestress);
+    let mut drive = Drive::constant(load.voltage[0], load.prestress[0]);
     drive.harmonic = Harmonic {
         amplitude,
         frequency,
@@ -124,6 +128,11 @@ impl Random {
                 self.between(elasticity, 1.0),
             ],
         }
+    }
+
+    /// True once in so many times.
+    fn one_in(&mut self, count: u64) -> bool {
+        self.bits().is_multiple_of(count)
     }
 
     /// One of these.

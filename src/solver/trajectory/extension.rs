@@ -180,9 +180,10 @@ impl Trajectory {
             self.control
         };
         let scale = state.position.abs();
+        let time_scale = local.time_scale(state);
         let free = match self.next_length {
             Some(length) => length,
-            None => FIRST_SUBSTEP * local.time_scale(state),
+            None => FIRST_SUBSTEP * time_scale,
         };
         let most = most.min(local.longest_substep());
         let shortest = (SHORTEST * free).min(0.5 * most);
@@ -209,7 +210,10 @@ impl Trajectory {
                     Verdict::Reject(0.5)
                 }
                 Ok(substep) => {
-                    control.judge(substep.tail() / NEGLECTED / scale, substep.contraction)
+                    // Of the position, or of the rate where that is worse.
+                    let short = (4.0 * time_scale / length).max(1.0);
+                    let missed = short * substep.tail() / NEGLECTED;
+                    control.judge(missed / scale, substep.contraction)
                 }
                 Err(Diverged) => Verdict::Reject(0.5),
             };
