@@ -159,6 +159,10 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     /// Lets time pass in which nothing moves.
     fn wait(&mut self, time: Double);
 
+    /// Sets the present time, and moves nothing. Returns whether what drives the motion depends
+    /// on time, so that a [`Motion::restart`] must follow.
+    fn set_clock(&mut self, scene: &M::Scene, time: Double) -> bool;
+
     /// The present time of the model.
     fn time(&self) -> &Double;
 

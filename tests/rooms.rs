@@ -49,7 +49,7 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "slave",
-        &["actuator", "model", "solver", "variables"],
+        &["actuator", "model", "shortest", "solver", "variables"],
         &["postcard", "serde"],
     ),
     (

@@ -9,6 +9,7 @@ use fmi::fmi2::binding::{
     fmi2Status_fmi2Fatal, fmi2Status_fmi2OK, fmi2Status_fmi2Warning,
 };
 
+use super::float_environment::FloatEnvironment;
 use crate::description::LOG_CATEGORIES;
 use crate::model::Model;
 use crate::slave::{Call, Event, Fault, Instance, Severity};
@@ -122,8 +123,11 @@ impl Host {
     }
 }
 
-/// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
+/// Runs `body` in the default floating-point environment, the host's put back
+/// after it; a panic in it becomes a fatal fault, and goes no further.
+#[inline(always)]
 fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    let _environment = FloatEnvironment::entered();
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
         Err(Fault {
             severity: Severity::Fatal,

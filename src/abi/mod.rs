@@ -21,6 +21,7 @@ mod component;
 mod envelope;
 mod exchange;
 mod export;
+mod float_environment;
 mod pointers;
 mod state;
 mod stepping;

@@ -88,7 +88,7 @@ pub unsafe extern "C" fn fmi2GetStatus<M: Model>(
         if s != fmi2StatusKind_fmi2DoStepStatus {
             return Err(no_such_status());
         }
-        *value = if component.instance.wants_to_terminate() {
+        *value = if component.instance.last_step_was_discarded() {
             fmi2Status_fmi2Discard
         } else {
             fmi2Status_fmi2OK

@@ -26,6 +26,9 @@ use crate::view::{Quantities, Sample};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Nondimensional;
 
+/// Stretches below this, stretches and rates above its inverse, are none of a motion.
+const FAR: f64 = 1e-20;
+
 impl Model for Nondimensional {
     const IDENTIFIER: &'static str = "DielectricElastomerActuator";
     const DESCRIPTION: &'static str = env!("CARGO_PKG_DESCRIPTION");
@@ -63,9 +66,11 @@ impl Model for Nondimensional {
             return Ok(());
         }
         Err(format!(
-            "lambda_start = {start} does not lie between lambda_min = {} and lambda_max = {}; \
+            "lambda_start = {} does not lie between lambda_min = {} and lambda_max = {}; \
              set it, or the limits, so that it does",
-            limits.lower, limits.upper
+            Shortest(start),
+            Shortest(limits.lower),
+            Shortest(limits.upper)
         ))
     }
 
@@ -91,15 +96,14 @@ impl Model for Nondimensional {
     }
 
     fn describe(scene: &Scene, limit: Limit, time: f64) -> String {
-        let Scene { limits, .. } = scene;
+        let time = Shortest(time);
+        let [lower, upper] = [scene.limits.lower, scene.limits.upper].map(Shortest);
         match limit {
             Limit::Upper => format!(
-                "the actuator was pulled in: at time {time} its stretch reached lambda_max = {}",
-                limits.upper
+                "the actuator was pulled in: at time {time} its stretch reached lambda_max = {upper}"
             ),
             Limit::Lower => format!(
-                "the actuator collapsed: at time {time} its stretch came down to lambda_min = {}",
-                limits.lower
+                "the actuator collapsed: at time {time} its stretch came down to lambda_min = {lower}"
             ),
         }
     }
@@ -146,15 +150,18 @@ impl Model for Nondimensional {
     }
 
     fn check_state(view: &View<Nondimensional>) -> Result<(), String> {
-        let [stretch, rate] = [view.stretch(), view.stretch_rate()];
-        if stretch > 0.0 && view.stretch_acceleration().is_finite() {
+        let State { position, rate } = view.state();
+        if position > 0.0 && view.stretch_acceleration().is_finite() {
             return Ok(());
         }
-        Err(format!(
-            "there is no motion at the stretch {} and the rate {}",
-            Shortest(stretch),
-            Shortest(rate)
-        ))
+        let [stretch, speed] = [position, rate].map(Shortest);
+        Err(if !(FAR..1.0 / FAR).contains(&position) {
+            format!("there is no motion at the stretch {stretch}")
+        } else if rate.abs() > 1.0 / FAR {
+            format!("there is no motion at the stretch rate {speed}")
+        } else {
+            format!("there is no motion at the stretch {stretch} and its rate {speed}")
+        })
     }
 
     fn state(view: &View<Nondimensional>) -> State {
@@ -217,6 +224,11 @@ impl Motion<Nondimensional> for Trajectory {
         Trajectory::wait(self, time);
     }
 
+    fn set_clock(&mut self, scene: &Scene, time: Double) -> bool {
+        Trajectory::set_clock(self, time);
+        !scene.drive.is_constant()
+    }
+
     #[inline]
     fn time(&self) -> &Double {
         Trajectory::time(self)
@@ -229,6 +241,6 @@ impl Motion<Nondimensional> for Trajectory {
     }
 
     fn whereabouts(&self) -> String {
-        format!("stretch {}", self.position())
+        format!("stretch {}", Shortest(self.position()))
     }
 }

@@ -5,6 +5,7 @@ use super::phase::Phase;
 use super::{Fault, Instance, values};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Polynomial};
 use crate::model::{Direction, Model};
+use crate::shortest::Shortest;
 use crate::solver::jet::HIGHEST_ORDER;
 use crate::variables::{Access, Causality, Derivatives, Kind, Variable};
 
@@ -32,7 +33,7 @@ impl<M: Model> Instance<M> {
                 )));
             }
             check_order(name, order, HIGHEST_DERIVATIVE)?;
-            check_finite(name, value)?;
+            check_derivative(name, value)?;
         }
         self.bring_drive_up_to_date();
         let before = self.scene.clone();
@@ -136,7 +137,7 @@ impl<M: Model> Instance<M> {
         let begun = self.phase != Phase::Initialization;
         for (&known, &change) in knowns.iter().zip(changes) {
             let variable = values::row::<M>(known)?;
-            check_finite(variable.name, change)?;
+            check_derivative(variable.name, change)?;
             match (variable.access, variable.kind) {
                 (Access::Input { of, .. }, _) => {
                     let input = of(&mut direction.scene);
@@ -197,11 +198,20 @@ fn check_order(name: &str, order: i32, highest: usize) -> Result<(), Fault> {
     )))
 }
 
-fn check_finite(name: &str, value: f64) -> Result<(), Fault> {
-    if value.is_finite() {
+/// Derivatives beyond this size, of inputs or as directions, are no derivatives of anything:
+/// powers of the time multiply them.
+const LARGEST_DERIVATIVE: f64 = 1e50;
+
+fn check_derivative(name: &str, value: f64) -> Result<(), Fault> {
+    if value.abs() <= LARGEST_DERIVATIVE {
         return Ok(());
     }
-    Err(Fault::error(format!(
-        "the derivative {value} of {name} is not a finite number"
-    )))
+    let number = Shortest(value);
+    Err(Fault::error(if value.is_finite() {
+        format!(
+            "the derivative {number} of {name} is not between -{LARGEST_DERIVATIVE:e} and {LARGEST_DERIVATIVE:e}"
+        )
+    } else {
+        format!("the derivative {number} of {name} is not a finite number")
+    }))
 }

@@ -4,8 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
-use super::{Course, Event, Fault, Instance};
+use super::{Course, Event, Fault, Instance, check_time};
 use crate::model::{AtLimit, Collapse, Model, Record};
+use crate::shortest::Shortest;
 use crate::solver::double::Double;
 use crate::variables::{Access, Kind};
 
@@ -149,11 +150,7 @@ impl<M: Model> Instance<M> {
     /// # Errors
     /// Error for a time that is not finite.
     pub fn set_time(&mut self, time: f64) -> Result<(), Fault> {
-        if !time.is_finite() {
-            return Err(Fault::error(format!(
-                "the time {time} is not a finite number"
-            )));
-        }
+        check_time("time", time)?;
         self.exchange()?.time = Double::new(time);
         Ok(())
     }
@@ -169,7 +166,8 @@ impl<M: Model> Instance<M> {
         }
         if let Some(bad) = states.iter().find(|state| !state.is_finite()) {
             return Err(Fault::error(format!(
-                "the continuous state {bad} is not a finite number"
+                "the continuous state {} is not a finite number",
+                Shortest(*bad)
             )));
         }
         let state = &mut self.exchange()?.state;

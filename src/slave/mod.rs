@@ -15,14 +15,16 @@ mod values;
 pub use exchange::{Exchange, Update};
 pub use fault::{Event, Fault, Severity};
 pub use phase::{Call, Interface, Phase};
-pub use run::Run;
+pub use run::{Run, STEP_RANGE};
 pub use state::LAYOUT as STATE_LAYOUT;
 pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
 use crate::model::{Model, Motion, Place, Record, View};
+use crate::shortest::Shortest;
 use crate::solver::double::Double;
+use crate::variables::Access;
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -181,22 +183,23 @@ impl<M: Model> Instance<M> {
         start_time: f64,
         stop_time: Option<f64>,
     ) -> Result<Option<Event>, Fault> {
-        if !start_time.is_finite() {
-            return Err(Fault::error(format!(
-                "the start time {start_time} is not a finite number"
-            )));
-        }
+        check_time("start time", start_time)?;
+        // A run without an end.
+        let stop_time = stop_time.filter(|&stop| stop != f64::INFINITY);
         if let Some(stop) = stop_time
             && !(stop.is_finite() && stop >= start_time)
         {
             return Err(Fault::error(format!(
-                "the stop time {stop} is not a finite number from the start time {start_time} on"
+                "the stop time {} is not a number from the start time {} on",
+                Shortest(stop),
+                Shortest(start_time)
             )));
         }
         let wanted = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         if !(wanted.is_finite() && wanted > 0.0) {
             return Err(Fault::error(format!(
-                "the tolerance {wanted} is not a finite number above 0"
+                "the tolerance {} is not a finite number above 0",
+                Shortest(wanted)
             )));
         }
         let [smallest, largest] = TOLERANCE_RANGE;
@@ -253,10 +256,23 @@ impl<M: Model> Instance<M> {
         let Course::Run(run) = &mut self.course else {
             return Err(Fault::error("the initialization has not been ended".into()));
         };
-        run.check_step(current, step, self.experiment.stop_time)?;
-        self.fresh_derivatives = 0;
-        let outcome = run.step(&self.scene, step);
-        if matches!(&outcome, Err(fault) if fault.severity == Severity::Discard) {
+        let stop_time = self.experiment.stop_time;
+        let outcome = run
+            .check_step(current, step, stop_time)
+            .and_then(|deviation| {
+                if deviation != 0.0 {
+                    set_clock(
+                        run,
+                        &mut self.scene,
+                        self.fresh_derivatives,
+                        current,
+                        deviation,
+                    );
+                }
+                self.fresh_derivatives = 0;
+                run.step(&self.scene, current, step)
+            });
+        if matches!(&outcome, Err(fault) if fault.severity == Severity::Discard) && !run.was_cut() {
             self.phase = Phase::StepFailed;
         }
         outcome
@@ -281,6 +297,13 @@ impl<M: Model> Instance<M> {
     #[must_use]
     pub fn last_successful_time(&self) -> f64 {
         self.view().time.value()
+    }
+
+    /// Whether the last step ended early.
+    #[must_use]
+    pub fn last_step_was_discarded(&self) -> bool {
+        let cut = matches!(&self.course, Course::Run(run) if run.was_cut());
+        cut || self.phase == Phase::StepFailed
     }
 
     /// Whether the host is asked to end the simulation.
@@ -313,4 +336,42 @@ impl<M: Model> Instance<M> {
             run.scene_changed();
         }
     }
+}
+
+/// Refuses a time that is no number, or so large that the clock cannot compute with it.
+fn check_time(what: &str, time: f64) -> Result<(), Fault> {
+    let [_, largest] = STEP_RANGE;
+    if time.abs() <= largest {
+        return Ok(());
+    }
+    let number = Shortest(time);
+    Err(Fault::error(if time.is_finite() {
+        format!("the {what} {number} is not between -{largest:e} and {largest:e}")
+    } else {
+        format!("the {what} {number} is not a finite number")
+    }))
+}
+
+/// Takes the host's time over, which is ahead of ours by `deviation`. What was set since the last
+/// step (derivatives: bit k for input k) was set for the host's communication point; the other
+/// inputs go on as the functions of time that they are.
+#[cold]
+fn set_clock<M: Model>(
+    run: &mut Run<M>,
+    scene: &mut M::Scene,
+    set: u64,
+    current: f64,
+    deviation: f64,
+) {
+    if M::inputs_since(scene) == run.motion().time() {
+        for (reference, variable) in M::VARIABLES.iter().enumerate() {
+            if let Access::Input { of, .. } = variable.access
+                && set & (1 << reference) == 0
+            {
+                of(scene).shift(deviation);
+            }
+        }
+        M::begin_inputs(scene, Double::new(current));
+    }
+    run.set_clock(scene, current, deviation);
 }

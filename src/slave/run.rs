@@ -5,15 +5,34 @@ use serde::{Deserialize, Serialize};
 
 use super::{Event, Fault};
 use crate::model::{AtLimit, Collapse, Model, Motion};
+use crate::shortest::Shortest;
 use crate::solver::double::Double;
 use crate::solver::trajectory::{Failure, Progress};
 
-/// A communication point may be off by this part of the time: hosts sum up
-/// their steps in different ways, up to 1e7 of them.
-const TIME_ROUNDING: f64 = 1e-9;
+/// Communication steps that can be followed: powers of shorter or longer ones are not numbers
+/// any more. Start times lie in the same range to both sides of 0.
+pub const STEP_RANGE: [f64; 2] = [1e-100, 1e50];
 
-/// A communication point may also be off by this part of the step.
-const STEP_ROUNDING: f64 = 1e-6;
+/// Within this part of the time the host's clock is ours: sums of `f64` in another order. Ours,
+/// which keeps more digits, goes on then.
+const SAME: f64 = 64.0 * f64::EPSILON;
+
+/// The host's clock may deviate by less than this part of a step, whatever it does with its time.
+const OF_STEP: f64 = 0.01;
+
+/// It may also deviate by this part of the time: a unit in the last place of single precision.
+const SINGLE: f64 = f32::EPSILON as f64;
+
+/// But by less than this part of a step, so that one that was forgotten or doubled is seen.
+const MOST_OF_STEP: f64 = 0.5;
+
+/// By how much the host's time may deviate in one step of this length at this time.
+fn allowance(step: f64, time: f64) -> f64 {
+    (OF_STEP * step)
+        .max(SINGLE * time.abs())
+        .min(MOST_OF_STEP * step)
+        .max(SAME * time.abs())
+}
 
 /// A running simulation.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -23,6 +42,10 @@ pub struct Run<M: Model> {
     collapse: Option<Collapse<M::Limit>>,
     /// The scene has changed since the trajectory has followed it.
     stale: bool,
+    /// By how much the host's clock is ahead of the sum of its steps.
+    drift: f64,
+    /// Where the last step began, if it was too much work and ended early.
+    cut_from: Option<f64>,
 }
 
 impl<M: Model> Run<M> {
@@ -31,13 +54,18 @@ impl<M: Model> Run<M> {
             motion: M::Motion::begin(scene, time, tolerance),
             collapse: None,
             stale: false,
+            drift: 0.0,
+            cut_from: None,
         }
     }
 
     /// Whether the numbers fit together as those of a motion of the scene.
     pub(super) fn is_sound(&self, scene: &M::Scene, tolerance: f64) -> bool {
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        self.motion.is_valid(scene, tolerance) && collapsed.is_finite()
+        self.motion.is_valid(scene, tolerance)
+            && collapsed.is_finite()
+            && self.drift.is_finite()
+            && self.cut_from.is_none_or(f64::is_finite)
     }
 
     /// The motion so far.
@@ -61,40 +89,95 @@ impl<M: Model> Run<M> {
         self.stale = true;
     }
 
-    /// Refuses a step that cannot be meant.
+    /// Refuses a step that cannot be meant. Returns by how much the host's clock is ahead
+    /// of ours, 0 where the two are the same.
+    #[inline]
     pub(super) fn check_step(
-        &self,
+        &mut self,
         current: f64,
         step: f64,
         stop_time: Option<f64>,
-    ) -> Result<(), Fault> {
-        if !(step > 0.0 && step <= f64::MAX) {
-            return Err(Fault::error(format!(
-                "the communication step {step} is not a finite number above 0"
-            )));
+    ) -> Result<f64, Fault> {
+        let [shortest, longest] = STEP_RANGE;
+        if !(shortest..=longest).contains(&step) {
+            return Err(not_a_step(step));
         }
-        let time = self.motion.time().value();
-        let rounding = TIME_ROUNDING * time.abs() + STEP_ROUNDING * step;
-        let off = (current - time).abs();
-        if off.is_nan() || off > rounding {
-            return Err(Fault::error(format!(
-                "the current communication point {current} is not the time {time} \
-                 at which the last step ended"
-            )));
+        let ahead = -self.motion.time().since(Double::new(current));
+        if self.cut_from == Some(current) {
+            return Err(self.asked_again(current));
         }
-        if let Some(stop) = stop_time
-            && time + step > stop + rounding + STEP_ROUNDING * step
-        {
-            return Err(Fault::error(format!(
-                "the step of {step} from {time} goes beyond the stop time {stop} \
-                 given to fmi2SetupExperiment"
-            )));
+        let deviation = if ahead.abs() <= SAME * current.abs() {
+            0.0
+        } else if ahead.abs() < allowance(step, current) {
+            ahead
+        } else {
+            return Err(self.not_the_time(current));
+        };
+        if let Some(stop) = stop_time {
+            self.check_end(current, step, deviation, stop)?;
         }
-        Ok(())
+        Ok(deviation)
+    }
+
+    /// Refuses a step beyond the stop time. The end is reached by the host's clock or by the sum
+    /// of its steps, from which that of a host that adds up in single precision runs away.
+    fn check_end(&self, current: f64, step: f64, deviation: f64, stop: f64) -> Result<(), Fault> {
+        let beyond = current + step - stop;
+        let allowed = allowance(step, stop);
+        let drift = self.drift + deviation;
+        if beyond <= allowed || beyond < MOST_OF_STEP * step && beyond - drift <= allowed {
+            return Ok(());
+        }
+        Err(Fault::error(format!(
+            "the step of {} from {} goes beyond the stop time {} given to fmi2SetupExperiment",
+            Shortest(step),
+            Shortest(current),
+            Shortest(stop)
+        )))
+    }
+
+    /// Ends the simulation of a host that does nothing about a step that was discarded: FMPy, for
+    /// one, would ask for it for ever.
+    #[cold]
+    fn asked_again(&mut self, current: f64) -> Fault {
+        self.cut_from = None;
+        Fault::discard(format!(
+            "the step from {} was discarded and is asked for again; the simulation should end at \
+             time {}, or go on from there",
+            Shortest(current),
+            Shortest(self.motion.time().value())
+        ))
+    }
+
+    #[cold]
+    fn not_the_time(&self, current: f64) -> Fault {
+        Fault::error(format!(
+            "the current communication point {} is not the time {} at which the last step ended",
+            Shortest(current),
+            Shortest(self.motion.time().value())
+        ))
+    }
+
+    /// Takes the host's time over as ours. The motion stands where it is; where what drives it
+    /// depends on time it goes on from there anew.
+    pub(super) fn set_clock(&mut self, scene: &M::Scene, current: f64, deviation: f64) {
+        self.drift += deviation;
+        self.stale |= self.motion.set_clock(scene, Double::new(current));
+    }
+
+    /// Whether the last step was too much work and ended early, and the motion can go on.
+    pub(super) fn was_cut(&self) -> bool {
+        self.cut_from.is_some()
     }
 
     /// Follows the motion for one step that has been checked.
-    pub(super) fn step(&mut self, scene: &M::Scene, step: f64) -> Result<Option<Event>, Fault> {
+    pub(super) fn step(
+        &mut self,
+        scene: &M::Scene,
+        current: f64,
+        step: f64,
+    ) -> Result<Option<Event>, Fault> {
+        self.cut_from = None;
         if self.collapse.is_some() {
             self.motion.wait(Double::new(step));
             return Ok(None);
@@ -122,23 +205,39 @@ impl<M: Model> Run<M> {
                     ))),
                 }
             }
-            Err(failure) => Err(self.fail(failure)),
+            Err(failure) => Err(self.fail(failure, current)),
         }
     }
 
-    fn fail(&self, failure: Failure) -> Fault {
-        let why = match failure {
-            Failure::SubstepTooShort { length, .. } => {
-                format!("a substep of {length} is too short to go on")
-            }
-            Failure::TooManySubsteps { most, .. } => {
-                format!("the step needs more than {most} substeps; use shorter steps")
-            }
-        };
-        let time = self.motion.time().value();
+    /// Why the step ended early. One that was too much work can be gone on with.
+    #[cold]
+    fn fail(&mut self, failure: Failure, current: f64) -> Fault {
+        let time = Shortest(self.motion.time().value());
         let place = self.motion.whereabouts();
-        Fault::discard(format!(
-            "the integration stopped at time {time} and {place}: {why}"
-        ))
+        let at = format!("the integration stopped at time {time} and {place}");
+        match failure {
+            Failure::SubstepTooShort { length, .. } => Fault::discard(format!(
+                "{at}: a substep of {} is too short to go on; the simulation should end here",
+                Shortest(length)
+            )),
+            Failure::TooManySubsteps { most, .. } => {
+                self.cut_from = Some(current);
+                Fault::discard(format!(
+                    "{at}: the step needs more than {most} substeps; use shorter steps from \
+                     there on"
+                ))
+            }
+        }
     }
+}
+
+#[cold]
+fn not_a_step(step: f64) -> Fault {
+    let [shortest, longest] = STEP_RANGE;
+    let number = Shortest(step);
+    Fault::error(if step > 0.0 && step.is_finite() {
+        format!("the communication step {number} is not between {shortest:e} and {longest:e}")
+    } else {
+        format!("the communication step {number} is not a finite number above 0")
+    })
 }

@@ -10,7 +10,7 @@
 //! pieces solve the equation of motion is not checked: bytes forged with care move
 //! the actuator as they say, until an input or a parameter changes.
 
-use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE};
+use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE, check_time};
 use crate::model::Model;
 use crate::variables::Access;
 
@@ -110,7 +110,7 @@ impl Experiment {
     fn is_sound(&self) -> bool {
         let [smallest, largest] = TOLERANCE_RANGE;
         let stop = self.stop_time.unwrap_or(self.start_time);
-        self.start_time.is_finite()
+        check_time("start time", self.start_time).is_ok()
             && stop.is_finite()
             && stop >= self.start_time
             && (smallest..=largest).contains(&self.tolerance)

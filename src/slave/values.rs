@@ -5,6 +5,7 @@ use super::phase::Phase;
 use super::{Course, Fault, Instance};
 use crate::actuator::drive::Polynomial;
 use crate::model::Model;
+use crate::shortest::Shortest;
 use crate::variables::{Access, Kind, Variability, Variable};
 
 /// The types of FMI under which a variable can be got and set.
@@ -246,8 +247,9 @@ fn check_value<M: Model>(variable: &Variable<M>, value: f64) -> Result<(), Fault
         && !(1.0..=items as f64).contains(&value)
     {
         return Err(Fault::error(format!(
-            "{} = {value} is not an item of its enumeration; set 1 to {items}",
-            variable.name
+            "{} = {} is not an item of its enumeration; set 1 to {items}",
+            variable.name,
+            Shortest(value)
         )));
     }
     variable.check(value).map_err(Fault::error)

@@ -5,7 +5,9 @@
 //! counts say, or null where that is what is tested.
 #![allow(unsafe_code, clippy::undocumented_unsafe_blocks)]
 
+mod clock;
 mod derivatives;
+mod environment;
 mod exchange;
 mod extremes;
 mod host;

@@ -428,6 +428,17 @@ impl Host {
         }
     }
 
+    /// The status of going on from these bytes.
+    pub fn restored(&self, bytes: &[u8]) -> fmi2Status {
+        unsafe {
+            let (mut state, data) = (null_mut(), bytes.as_ptr().cast());
+            let read = fmi2DeSerializeFMUstate(self.component, data, bytes.len(), &mut state);
+            let status = read.max(fmi2SetFMUstate(self.component, state));
+            fmi2FreeFMUstate(self.component, &mut state);
+            status
+        }
+    }
+
     /// The communication point that was reached; 0 before there is one.
     pub fn time(&self) -> f64 {
         let mut time = 0.0;

@@ -189,3 +189,32 @@ fn a_step_that_is_too_long_for_its_drive_is_discarded_with_a_reason() {
         assert!(taken < allowed::SLOWEST_STEP, "{what}");
     }
 }
+
+/// A host that adds up its steps, in a run as long as one takes; its time is what it says.
+#[test]
+fn sums_of_many_steps_run_through() {
+    let step = 1e-4;
+    let count = if long() { 100_000_000 } else { 1_000_000 };
+    for start in [0.0, -30.0] {
+        let mut slave = Instance::new();
+        let stop = start + f64::from(count) * step;
+        slave
+            .setup_experiment(None, start, Some(stop))
+            .expect("legal");
+        slave.enter_initialization();
+        slave.set(Type::Real, &[0], |_| 0.5).expect("legal");
+        slave.exit_initialization().expect("legal");
+        let mut time = start;
+        for _ in 0..count {
+            slave.do_step(time, step).expect("a step");
+            time += step;
+        }
+        let deviation = (slave.last_successful_time() - time).abs();
+        assert_at_most(
+            deviation,
+            2e-14 * time.abs() + 1e-12,
+            "deviation of the clock",
+        );
+        assert!(slave.do_step(time, step).is_err(), "beyond the stop time");
+    }
+}

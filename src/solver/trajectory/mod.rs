@@ -160,6 +160,13 @@ impl Trajectory {
         &self.time
     }
 
+    /// Sets the clock, and moves nothing. Where the equation depends on time, a
+    /// [`Trajectory::restart`] must follow.
+    pub fn set_clock(&mut self, time: Double) {
+        self.origin = self.origin.add(time.sub(self.time));
+        self.time = time;
+    }
+
     /// Lets time pass in which nothing moves.
     pub fn wait(&mut self, time: Double) {
         self.time = self.time.add(time);
