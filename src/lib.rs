@@ -7,7 +7,8 @@
 //! 2. [`actuator`]: the physics, Eq. 16 of the paper, folded and driven;
 //! 3. [`pull_in`]: the voltages beyond which the actuator collapses;
 //! 4. [`scene`]: what a host sets; [`view`]: what it reads;
-//! 5. [`sweep`]: many scenes at once, for Rust programs;
+//! 5. [`sweep`]: many scenes at once, and [`sensitivity`]: how a motion depends on
+//!    its parameters, both for who needs no host;
 //! 6. [`variables`]: the table that gives both their names and limits;
 //! 7. [`description`]: the table as `modelDescription.xml`;
 //! 8. [`slave`]: phases, checks and communication steps of an instance;
@@ -26,6 +27,7 @@ pub mod model;
 pub mod nondimensional;
 pub mod pull_in;
 pub mod scene;
+pub mod sensitivity;
 mod shortest;
 pub mod slave;
 pub mod solver;

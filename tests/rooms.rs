@@ -47,6 +47,7 @@ const LAW: &[(&str, &[&str], &[&str])] = &[
         &["actuator", "scene", "solver"],
         &["fearless_simd"],
     ),
+    ("sensitivity", &["actuator", "scene", "solver"], &[]),
     (
         "slave",
         &["actuator", "model", "shortest", "solver", "variables"],

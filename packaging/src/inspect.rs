@@ -78,14 +78,10 @@ impl Binary {
         }
         let expected: BTreeSet<String> = names.iter().map(|name| (*name).to_owned()).collect();
         for name in expected.difference(&self.exported) {
-            faults.push(format!(
-                "it does not export {name}, which abi::EXPORTED_NAMES lists"
-            ));
+            faults.push(format!("it does not export {name}, which it should"));
         }
         for name in self.exported.difference(&expected) {
-            faults.push(format!(
-                "it exports {name}, which abi::EXPORTED_NAMES does not list"
-            ));
+            faults.push(format!("it exports {name}, which it should not"));
         }
         for library in &self.libraries {
             if !platform

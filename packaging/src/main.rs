@@ -62,8 +62,8 @@ struct Arguments {
     /// What to do; `pack` if nothing is said
     #[command(subcommand)]
     verb: Option<Verb>,
-    /// Pack for every platform that can be built for here, not for 64-bit Linux only
-    #[arg(long)]
+    /// Build for every platform that can be built for here, not for 64-bit Linux only
+    #[arg(long, global = true)]
     all: bool,
 }
 
@@ -79,6 +79,8 @@ enum Verb {
     },
     /// Write the user's guide to target/guide
     Guide,
+    /// Build the library that carries the core into Python, in target/native
+    Native,
 }
 
 fn main() -> ExitCode {
@@ -87,6 +89,7 @@ fn main() -> ExitCode {
         Verb::Pack => pack(arguments.all),
         Verb::Describe { check } => describe(check),
         Verb::Guide => write_guide(),
+        Verb::Native => native(arguments.all),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -96,6 +99,14 @@ fn main() -> ExitCode {
         }
     }
 }
+
+/// The names that the library for Python exports.
+const NATIVE_NAMES: &[&str] = &[
+    "dea_known_names",
+    "dea_scene_names",
+    "dea_sensitivities",
+    "dea_sweep",
+];
 
 /// Packs each FMU, of one platform or of every one that can be built for, and prints what was packed.
 fn pack(all: bool) -> Result<()> {
@@ -127,20 +138,17 @@ fn pack_one(
 ) -> Result<()> {
     let folder = project.workspace_root.join("target/fmu");
     entries.insert("modelDescription.xml".into(), (fmu.xml)().into());
+    let library = Library {
+        identifier: fmu.identifier,
+        names: EXPORTED_NAMES,
+    };
     let mut report = String::new();
     for (platform, toolchain) in built {
-        let file = format!("{}.{}", fmu.identifier, platform.extension);
+        let file = library.file(platform);
         let place = folder.join(platform.folder);
-        let bytes = build(
-            fmu,
-            project,
-            toolchain,
-            zig,
-            platform,
-            place.as_std_path(),
-            &file,
-        )?;
-        report += &check(&bytes, platform).with_context(|| format!("{place}/{file} is refused"))?;
+        let bytes = library.build(project, toolchain, zig, platform, place.as_std_path())?;
+        report += &check(&bytes, platform, EXPORTED_NAMES)
+            .with_context(|| format!("{place}/{file} is refused"))?;
         entries.insert(format!("binaries/{}/{file}", platform.folder), bytes);
     }
     let path = folder.join(format!("{}.fmu", fmu.identifier));
@@ -168,34 +176,60 @@ fn toolchains(platforms: &[Platform]) -> Result<(Vec<(&Platform, Toolchain)>, St
     Ok((built, missing))
 }
 
-/// Builds the shared library `file` of an FMU for a platform in `folder` and returns its bytes.
-fn build(
-    fmu: &Fmu,
-    project: &Metadata,
-    toolchain: &Toolchain,
-    zig: &Zig,
-    platform: &Platform,
-    folder: &Path,
-    file: &str,
-) -> Result<Vec<u8>> {
-    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    let shared = folder.join(file);
-    let archive = library::compile(
-        project,
-        fmu.identifier,
-        toolchain,
-        zig,
-        platform,
-        &folder.join("zig"),
-    )?;
-    library::link(
-        zig,
-        archive.as_std_path(),
-        &shared,
-        platform,
-        EXPORTED_NAMES,
-    )?;
-    fs::read(&shared).with_context(|| format!("cannot read {}", shared.display()))
+/// A shared library that is built for many platforms.
+struct Library<'a> {
+    /// What it is called, and the library of the workspace that it is made of.
+    identifier: &'a str,
+    /// What it exports.
+    names: &'a [&'a str],
+}
+
+impl Library<'_> {
+    /// Builds the library for a platform in `folder` and returns its bytes.
+    fn build(
+        &self,
+        project: &Metadata,
+        toolchain: &Toolchain,
+        zig: &Zig,
+        platform: &Platform,
+        folder: &Path,
+    ) -> Result<Vec<u8>> {
+        fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+        let shared = folder.join(self.file(platform));
+        let besides = folder.join("zig");
+        let archive =
+            library::compile(project, self.identifier, toolchain, zig, platform, &besides)?;
+        library::link(zig, archive.as_std_path(), &shared, platform, self.names)?;
+        fs::read(&shared).with_context(|| format!("cannot read {}", shared.display()))
+    }
+
+    /// What its file is called on a platform.
+    fn file(&self, platform: &Platform) -> String {
+        format!("{}.{}", self.identifier, platform.extension)
+    }
+}
+
+/// Builds the library that carries the core into Python, and prints what was built.
+fn native(all: bool) -> Result<()> {
+    let project = project()?;
+    let zig = Zig::find()?;
+    let library = Library {
+        identifier: "dielectric_actuator_native",
+        names: NATIVE_NAMES,
+    };
+    let folder = project.workspace_root.join("target/native");
+    let count = if all { PLATFORMS.len() } else { 1 };
+    let (built, missing) = toolchains(&PLATFORMS[..count])?;
+    println!("{folder}:");
+    for (platform, toolchain) in &built {
+        let place = folder.join(platform.folder);
+        let bytes = library.build(&project, toolchain, &zig, platform, place.as_std_path())?;
+        let report = check(&bytes, platform, NATIVE_NAMES)
+            .with_context(|| format!("{place}/{} is refused", library.file(platform)))?;
+        print!("{report}");
+    }
+    print!("{missing}");
+    Ok(())
 }
 
 /// Writes the user's guide.
@@ -210,9 +244,9 @@ fn write_guide() -> Result<()> {
 }
 
 /// The report on a shared library, a line each; an error with every fault if it has one.
-fn check(bytes: &[u8], platform: &Platform) -> Result<String> {
+fn check(bytes: &[u8], platform: &Platform, names: &[&str]) -> Result<String> {
     let binary = Binary::read(bytes)?;
-    let faults = binary.faults(platform, EXPORTED_NAMES);
+    let faults = binary.faults(platform, names);
     ensure!(faults.is_empty(), "{}", faults.join(";\n  "));
     let glibc = binary
         .newest_glibc()

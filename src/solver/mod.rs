@@ -7,6 +7,7 @@
 //! * [`batch`]: many motions at once, one in each lane;
 //! * [`coupled`]: the same with first-order states and dissipation;
 //! * [`step_control`]: how long the next substep may be;
+//! * [`linearized`]: the motion beside a motion;
 //! * [`limits`]: where the motion leaves the range in which it is followed;
 //! * [`orbit`]: a motion that repeats;
 //! * [`extremes`]: how far the motion has swung;
@@ -23,6 +24,7 @@ mod hop;
 pub mod jet;
 pub mod lanes;
 pub mod limits;
+pub mod linearized;
 pub mod number;
 pub mod orbit;
 mod outcome;

@@ -177,6 +177,15 @@ impl Segment {
         slope * self.inverse
     }
 
+    /// x and x' at `offset` after the begin of the segment.
+    #[must_use]
+    pub fn state(&self, offset: f64) -> State {
+        State {
+            position: self.position(offset),
+            rate: self.rate(offset),
+        }
+    }
+
     /// The positions at which the motion turns between two offsets.
     pub fn turns(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
         let parts = ((to - from) / self.length() * PARTS as f64).ceil() as usize;

@@ -167,7 +167,7 @@ impl Trajectory {
 
     /// Solves the next substep, as long as the tolerance allows but no longer than
     /// `most`.
-    fn substep<L: LocalEquation>(
+    pub(super) fn substep<L: LocalEquation>(
         &mut self,
         local: &L,
         state: State,

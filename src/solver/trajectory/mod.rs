@@ -22,6 +22,7 @@ use super::{Equation, State};
 mod extension;
 mod present;
 mod soundness;
+mod substeps;
 
 /// Substeps that one call may take: about a second of work.
 const MOST_SUBSTEPS: u32 = 2_000_000;

@@ -1,0 +1,230 @@
+"""The core of the actuator where no host is in the loop: ensembles in SIMD lanes, and exact sensitivities.
+
+A small shared library in the package does the work (`python/native` of the sources), without FMI.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import math
+import os
+import platform
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import fmpy
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .fmu import UnknownName, packed_fmu
+
+Floats = NDArray[np.float64]
+
+DEFAULT_TOLERANCE = 1e-10
+"""Relative tolerance of the stretch, as the FMU's."""
+
+_DATA = Path(__file__).resolve().parent / "data" / "native"
+_CHECKOUT = Path(__file__).resolve().parents[2] / "target" / "native"
+_FOLDERS = {
+    ("Linux", "x86_64"): ("linux64", "so"),
+    ("Linux", "aarch64"): ("aarch64-linux", "so"),
+    ("Windows", "AMD64"): ("win64", "dll"),
+    ("Darwin", "x86_64"): ("darwin64", "dylib"),
+}
+
+_OUTCOME = np.dtype([
+    ("lambda", "f8"), ("lambda_dot", "f8"), ("lambda_lowest", "f8"), ("lambda_highest", "f8"),
+    ("pull_in_time", "f8"), ("failed", "f8"),
+])  # fmt: skip
+_SLICE = 4096
+"""Scenes between two reports of progress, a thread."""
+
+
+class Collapse(RuntimeError):
+    """The actuator was pulled in before the end; `time` is when."""
+
+    def __init__(self, time: float):
+        self.time = time
+        super().__init__(f"the actuator is pulled in at time {time:.6g}, before the last sample")
+
+
+@functools.cache
+def _library() -> ctypes.CDLL:
+    system = platform.system(), platform.machine()
+    if system not in _FOLDERS:
+        raise OSError(f"the package has no native library for {' '.join(system)}; `Actuator` and `sweep` do without")
+    folder, extension = _FOLDERS[system]
+    below = Path(folder) / f"dielectric_actuator_native.{extension}"
+    path = next((path for path in (_DATA / below, _CHECKOUT / below) if path.is_file()), None)
+    if path is None:
+        raise OSError(f"there is no native library at {_DATA / below}; in a checkout, make native builds it")
+    library = ctypes.CDLL(str(path))
+    for names in (library.dea_scene_names, library.dea_known_names):
+        names.restype = ctypes.c_char_p
+    pointer, number, size = ctypes.c_void_p, ctypes.c_double, ctypes.c_size_t
+    library.dea_sweep.argtypes = [pointer, size, number, number, size, pointer]
+    library.dea_sensitivities.argtypes = [pointer, pointer, number, pointer, size, pointer, size, pointer, pointer]
+    return library
+
+
+@functools.cache
+def scene_names() -> tuple[str, ...]:
+    """Names of the variables that a scene of an ensemble is given by; the same as the FMU's."""
+    return tuple(_library().dea_scene_names().decode().split())
+
+
+@functools.cache
+def known_names() -> tuple[str, ...]:
+    """Names of what `sensitivities` differentiates by: parameters and start as the FMU calls them, the prestress
+    ``S``, and the factors ``phi_scale`` and ``time_scale`` of the given voltage and times."""
+    return tuple(_library().dea_known_names().decode().split())
+
+
+@functools.cache
+def limits() -> dict[str, tuple[float, float, float]]:
+    """Start value, smallest and largest value of each of `scene_names` and `known_names`."""
+    description = fmpy.read_model_description(str(packed_fmu()))
+    found = {
+        variable.name: (
+            float(variable.start),
+            -math.inf if variable.min is None else float(variable.min),
+            math.inf if variable.max is None else float(variable.max),
+        )
+        for variable in description.modelVariables
+        if variable.name in scene_names() or variable.name in known_names()
+    }
+    return {**found, "phi_scale": (1.0, -math.inf, math.inf), "time_scale": (1.0, math.ulp(0.0), math.inf)}
+
+
+def _column(name: str, values: Floats) -> Floats:
+    """The values of a column; ValueError with the row of one that is no number or out of range."""
+    _, lowest, highest = limits()[name]
+    bad = np.flatnonzero(~((lowest <= values) & (values <= highest) & np.isfinite(values)))
+    if bad.size:
+        raise ValueError(
+            f"{name} in row {bad[0]} is {values[bad[0]]:g}; it must be a number from {lowest:g} to {highest:g}"
+        )
+    return values
+
+
+def ensemble(
+    scenes: Mapping[str, ArrayLike],
+    *,
+    stop_time: float,
+    tolerance: float = DEFAULT_TOLERANCE,
+    workers: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> np.ndarray:
+    """Follow many actuators from time 0 to `stop_time` at once, in SIMD lanes and on `workers` threads (0: one a core).
+
+    `scenes` holds a column for each variable that is not at its start value, of `scene_names`; numbers and
+    columns are broadcast. Voltage and prestress are constant but for the built-in alternating voltage. The
+    result is a structured array, a row a scene, with the FMU's names: ``lambda`` and ``lambda_dot`` at the end or
+    where the actuator was pulled in, ``lambda_lowest`` and ``lambda_highest`` on the way, located exactly, the
+    same of ``lambda3``, ``pulled_in`` and ``pull_in_time`` (+inf where it was not). Where the integration
+    cannot go on the numbers are NaN. `progress` is called with the number of scenes done and that of all.
+
+    Raises `UnknownName` for a column that is none, ValueError with row and column for a value that is no number or
+    out of range.
+    """
+    names = scene_names()
+    for name in scenes:
+        if name not in names:
+            raise UnknownName("variable", name, names)
+    if not (math.isfinite(stop_time) and stop_time > 0):
+        raise ValueError(f"stop_time is {stop_time:g}; it must be a number above 0")
+    if not 1e-14 <= tolerance <= 1e-2:
+        raise ValueError(f"tolerance is {tolerance:g}; it must be from 1e-14 to 1e-2")
+    columns = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(scenes.get(name, limits()[name][0]), dtype=float)) for name in names)
+    )
+    if columns[0].ndim != 1:
+        raise ValueError(f"the columns have {columns[0].ndim} dimensions; they must have one, as `grid` makes them")
+    rows = np.ascontiguousarray(np.column_stack([_column(name, column) for name, column in zip(names, columns)]))
+    outcomes = np.empty(len(rows), dtype=_OUTCOME)
+    slice_size = _SLICE * (workers or os.cpu_count() or 1)
+    for start in range(0, len(rows), slice_size):
+        part, found = rows[start : start + slice_size], outcomes[start : start + slice_size]
+        ending = _library().dea_sweep(part.ctypes.data, len(part), stop_time, tolerance, workers, found.ctypes.data)
+        if ending:
+            raise RuntimeError("a fault in the native library: the ensemble could not be followed")
+        if progress:
+            progress(start + len(part), len(rows))
+    return _with_thickness(outcomes)
+
+
+def _with_thickness(outcomes: np.ndarray) -> np.ndarray:
+    fields = [(name, "f8") for name in _OUTCOME.names[:-1]] if _OUTCOME.names else []
+    table = np.empty(
+        len(outcomes), dtype=[*fields, ("lambda3_lowest", "f8"), ("lambda3_highest", "f8"), ("pulled_in", "?")]
+    )
+    for name, _ in fields:
+        table[name] = outcomes[name]
+    table["lambda3_lowest"] = outcomes["lambda_highest"] ** -2.0
+    table["lambda3_highest"] = outcomes["lambda_lowest"] ** -2.0
+    table["pulled_in"] = np.isfinite(outcomes["pull_in_time"])
+    return table
+
+
+def sensitivities(
+    values: Mapping[str, float],
+    time: ArrayLike,
+    voltage: ArrayLike,
+    *,
+    at: ArrayLike | None = None,
+    interpolation: str = "linear",
+    tolerance: float = DEFAULT_TOLERANCE,
+) -> tuple[Floats, Floats]:
+    """The stretch under a given voltage, and its exact derivatives by each of `known_names`.
+
+    The voltage is ``phi_scale`` times the given one, which is a straight line between two samples
+    (`interpolation` "linear") or keeps its value up to the next ("hold"); the times are multiplied by
+    ``time_scale``. The motion starts at the first time. Returns λ at the times `at` (default: `time`) and an
+    array with a row for each of them and a column for each of `known_names`: the variational equations along the
+    trajectory, solved with the substeps of the motion.
+
+    Raises `Collapse` where the actuator is pulled in on the way.
+    """
+    names = known_names()
+    for name in values:
+        if name not in names:
+            raise UnknownName("parameter", name, names)
+    knowns = np.array([
+        _column(name, np.array([float(values.get(name, limits()[name][0]))]))[0] for name in names
+    ])  # fmt: skip
+    time, voltage = np.asarray(time, dtype=float), np.asarray(voltage, dtype=float)
+    sampled = np.ascontiguousarray(time if at is None else np.asarray(at, dtype=float))
+    bounds = np.array([limits()["lambda_min"][0], limits()["lambda_max"][0]])
+    ramps = _ramps(time, voltage, interpolation)
+    samples = np.empty((len(sampled), 1 + len(names)))
+    when = np.zeros(1)
+    ending = _library().dea_sensitivities(
+        knowns.ctypes.data, bounds.ctypes.data, tolerance, ramps.ctypes.data, len(ramps),
+        sampled.ctypes.data, len(sampled), samples.ctypes.data, when.ctypes.data,
+    )  # fmt: skip
+    if ending == 1:
+        raise Collapse(float(when[0]))
+    if ending:
+        raise RuntimeError("the integration could not go on" if ending == 2 else "a fault in the native library")
+    return samples[:, 0], samples[:, 1:]
+
+
+def _ramps(time: Floats, voltage: Floats, interpolation: str) -> Floats:
+    """Rows of time, voltage and slope; one that goes on as the one before is left out."""
+    slopes = np.zeros(len(time))
+    if interpolation == "linear":
+        slopes[:-1] = np.diff(voltage) / np.diff(time)
+    elif interpolation != "hold":
+        raise ValueError(f"interpolation is {interpolation!r}; it must be 'linear' or 'hold'")
+    ramps = np.column_stack([time, voltage, slopes])
+    new = np.ones(len(ramps), dtype=bool)
+    new[1:] = (ramps[1:, 2] != 0) | (ramps[:-1, 2] != 0) | (ramps[1:, 1] != ramps[:-1, 1])
+    return np.ascontiguousarray(ramps[new])
+
+
+def grid(**axes: Sequence[float] | Floats) -> dict[str, Floats]:
+    """Every combination of the given values as columns, the last name varying fastest."""
+    columns: Any = np.meshgrid(*(np.asarray(axis, dtype=float) for axis in axes.values()), indexing="ij")
+    return {name: column.ravel() for name, column in zip(axes, columns)}

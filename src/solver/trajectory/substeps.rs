@@ -1,0 +1,41 @@
+//! A motion followed substep by substep, for who needs each of them.
+
+use super::{Failure, Progress, Trajectory};
+use crate::solver::Equation;
+use crate::solver::segment::Segment;
+
+impl Trajectory {
+    /// Follows the motion over one substep of 16 nodes, no longer than `most`, and
+    /// returns it. Where it meets a limit the trajectory stands there, and the substep goes beyond.
+    ///
+    /// # Errors
+    /// [`Failure::SubstepTooShort`] where the integration cannot go on.
+    pub fn advance_by_substep<E: Equation>(
+        &mut self,
+        equation: &E,
+        most: f64,
+    ) -> Result<(Segment, Progress), Failure> {
+        let state = self.state();
+        let time = self.time;
+        self.stand_at(time, state);
+        let local = equation.seen_from(&time);
+        let substep = self
+            .substep(&local, state, true, most)
+            .map_err(|length| Failure::SubstepTooShort { length, after: 0.0 })?;
+        let mut segment = Segment::new(state, substep.end, &substep.series);
+        segment.expand();
+        let contact = self.limits.first_contact(&mut segment, substep.reach());
+        let (progress, passed, end) = match contact {
+            None => (Progress::Whole, segment.length(), segment.end()),
+            Some((limit, after)) => (
+                Progress::Stopped { limit, after },
+                after,
+                segment.state(after),
+            ),
+        };
+        self.time = time.plus(passed).tightened();
+        let time = self.time;
+        self.stand_at(time, end);
+        Ok((segment, progress))
+    }
+}
