@@ -57,6 +57,10 @@ rm -rf $(WHEEL) && mkdir -p $(WHEEL)/source && cp Cargo.toml $(WHEEL) && \
 cp -R python/dielectric_actuator python/pyproject.toml python/README.md LICENSE-* $(WHEEL)/source && \
 mkdir $(WHEEL)/source/dielectric_actuator/data && \
 cp target/fmu/*.fmu $(WHEEL)/source/dielectric_actuator/data && \
+for library in target/native/*/dielectric_actuator_native.so target/native/*/dielectric_actuator_native.d*l*; do \
+[ ! -f $$library ] || { folder=$(WHEEL)/source/dielectric_actuator/data/native/$$(basename $$(dirname $$library)) && \
+mkdir -p $$folder && cp $$library $$folder; } || exit 1; done && \
+cp -R target/native/documentation/licenses $(WHEEL)/source/dielectric_actuator/data/native && \
 (cd $(WHEEL)/source && $(abspath $(PYTHON_IN_VENV)) -m hatchling build --target wheel --directory ..) && \
 rm -r $(WHEEL)/source $(WHEEL)/Cargo.toml && ls -l $(WHEEL)/*.whl
 endef
@@ -76,7 +80,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all wheel guide paper examples test $(CHECKS) lint-all audit test-platforms stress soak \
+.PHONY: help run fmu fmu-all native wheel guide paper examples test $(CHECKS) lint-all audit test-platforms stress soak \
 fuzz bench env clean
 
 help:
@@ -94,6 +98,7 @@ help:
 	@echo 'make bench           time the actuator and its rivals (benchmark/README.md)'
 	@echo 'make fmu             build and pack the FMU only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
+	@echo 'make native          build the native library of the Python package for 64-bit Linux'
 	@echo 'make wheel           build the Python package for every platform into target/wheel'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
 	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
@@ -113,7 +118,14 @@ fmu-all: $(INSTALLED)
 	$(call heading,FMU for every platform)
 	@$(CARGO) fmu --all
 
+native: $(INSTALLED)
+	$(call heading,Native library of the Python package)
+	@$(CARGO) fmu native
+
 wheel: fmu-all $(PACKAGE_INSTALLED)
+	$(call heading,Native library of the Python package for every platform)
+	@rm -rf target/native
+	@$(CARGO) fmu native --all
 	$(call heading,Wheel)
 	@$(call build_wheel)
 
@@ -191,7 +203,7 @@ package-types: $(PACKAGE_INSTALLED)
 	$(call heading,Types of the Python package)
 	@$(PYTHON_IN_VENV) -m mypy --config-file python/pyproject.toml python/dielectric_actuator
 
-package-tests: fmu $(PACKAGE_INSTALLED)
+package-tests: fmu native $(PACKAGE_INSTALLED)
 	$(call heading,Python package)
 	@$(call build_wheel)
 	@$(call install_wheel)

@@ -156,7 +156,7 @@ fn definitions(names: &[&str]) -> String {
 }
 
 /// The member of the workspace whose library has this name.
-fn member<'a>(project: &'a Metadata, identifier: &str) -> Result<&'a Package> {
+pub fn member<'a>(project: &'a Metadata, identifier: &str) -> Result<&'a Package> {
     let has_library = |package: &&Package| {
         let mut targets = package.targets.iter();
         targets.any(|target| target.name == identifier)

@@ -28,7 +28,7 @@ const NAMES: &[&str] = &[
     "UNLICENSE",
 ];
 
-/// Adds the licences to the FMU.
+/// Adds the licences of what is linked into the binaries of a package.
 ///
 /// # Errors
 /// If a licence that must be there cannot be read, or a crate names none.
@@ -38,6 +38,7 @@ pub fn add(
     toolchain: &Toolchain,
     zig: &Zig,
     platforms: &[&Platform],
+    package: &Package,
 ) -> Result<()> {
     let rust = toolchain
         .sysroot()?
@@ -70,17 +71,17 @@ pub fn add(
     }
     entries.insert(
         format!("{FOLDER}/crates.txt"),
-        crates(project, platforms)?.into(),
+        crates(project, platforms, package)?.into(),
     );
     Ok(())
 }
 
 /// Every linked crate with its version and licence, then the texts, each once.
-fn crates(project: &Metadata, platforms: &[&Platform]) -> Result<String> {
+fn crates(project: &Metadata, platforms: &[&Platform], package: &Package) -> Result<String> {
     let mut linked = BTreeMap::new();
     for platform in platforms {
         let resolved = library::resolve(project, platform)?;
-        for package in linked_packages(&resolved)? {
+        for package in linked_packages(&resolved, package)? {
             linked.insert(
                 (package.name.to_string(), package.version.clone()),
                 package.clone(),
@@ -115,8 +116,8 @@ fn crates(project: &Metadata, platforms: &[&Platform]) -> Result<String> {
     Ok(list)
 }
 
-/// The packages below the root that are linked: normal dependencies, no compile-time ones.
-fn linked_packages(resolved: &Metadata) -> Result<Vec<&Package>> {
+/// The packages below `root` that are linked: normal dependencies, no compile-time ones.
+fn linked_packages<'a>(resolved: &'a Metadata, root: &Package) -> Result<Vec<&'a Package>> {
     let packages: BTreeMap<&PackageId, &Package> = resolved
         .packages
         .iter()
@@ -126,7 +127,6 @@ fn linked_packages(resolved: &Metadata) -> Result<Vec<&Package>> {
         .resolve
         .as_ref()
         .context("cargo resolved nothing")?;
-    let root = library::root_package(resolved)?;
     let mut seen = BTreeSet::new();
     let mut ahead = vec![&root.id];
     while let Some(id) = ahead.pop() {

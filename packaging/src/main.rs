@@ -120,7 +120,8 @@ fn pack(all: bool) -> Result<()> {
     shared.insert("model.png".into(), icon::png()?);
     let guide = guide::html(project.workspace_root.as_std_path())?;
     shared.insert("documentation/index.html".into(), guide.into());
-    licences::add(&mut shared, &project, &built[0].1, &zig, &platforms)?;
+    let core = library::root_package(&project)?;
+    licences::add(&mut shared, &project, &built[0].1, &zig, &platforms, core)?;
     for fmu in FMUS {
         pack_one(fmu, shared.clone(), &project, &zig, &built)?;
     }
@@ -227,6 +228,23 @@ fn native(all: bool) -> Result<()> {
         let report = check(&bytes, platform, NATIVE_NAMES)
             .with_context(|| format!("{place}/{} is refused", library.file(platform)))?;
         print!("{report}");
+    }
+    let mut licences = Entries::new();
+    let platforms: Vec<&Platform> = built.iter().map(|(platform, _)| *platform).collect();
+    let package = library::member(&project, library.identifier)?;
+    licences::add(
+        &mut licences,
+        &project,
+        &built[0].1,
+        &zig,
+        &platforms,
+        package,
+    )?;
+    for (name, bytes) in licences {
+        let path = folder.join(name);
+        fs::create_dir_all(path.parent().unwrap_or(&folder))
+            .with_context(|| format!("cannot make the folder of {path}"))?;
+        fs::write(&path, bytes).with_context(|| format!("cannot write {path}"))?;
     }
     print!("{missing}");
     Ok(())

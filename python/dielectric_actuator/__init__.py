@@ -1,7 +1,11 @@
 """The motion of a dielectric elastomer actuator with surface effects: run, sweep, plot, fit.
 
-* `Actuator`: one instance of the packed FMU, by name;
-* `frame`: a response as a pandas table.
+* `Actuator`: one instance of the packed FMU, by name; `frame` makes a pandas table of a response;
+* `presets`: scenes that show a motion;
+* `ensemble`, `grid`: many scenes at once, in SIMD lanes on every core;
+* `sensitivities`: a motion with its exact derivatives by the parameters;
+* `identification.fit`: parameters from measured data, which `measured` reads (extra ``fit``);
+* `plot`: history, phase portrait, pull-in margin (extra ``plot``).
 
 The model is that of A. P. Singh, G. Shmuel and A. K. Sharma, *Nonlinear dynamics of miniaturized dielectric
 elastomer actuators with surface effects*.
@@ -11,12 +15,28 @@ from importlib.metadata import PackageNotFoundError, version
 
 from fmpy.fmi1 import FMICallException
 
-from .actuator import Actuator, SavedState, Scene, frame
-from .fmu import LogMessage, UnknownName, packed_fmu
-
 try:
     __version__ = version("dielectric-actuator")
 except PackageNotFoundError:  # the sources, not installed
     __version__ = "0"
 
-__all__ = ["Actuator", "FMICallException", "LogMessage", "SavedState", "Scene", "UnknownName", "frame", "packed_fmu"]
+from . import presets
+from .actuator import Actuator, SavedState, Scene, frame
+from .fmu import LogMessage, UnknownName, packed_fmu
+from .native import Collapse, ensemble, grid, sensitivities
+
+__all__ = [
+    "Actuator",
+    "Collapse",
+    "FMICallException",
+    "LogMessage",
+    "SavedState",
+    "Scene",
+    "UnknownName",
+    "ensemble",
+    "frame",
+    "grid",
+    "packed_fmu",
+    "presets",
+    "sensitivities",
+]

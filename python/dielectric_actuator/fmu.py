@@ -41,7 +41,7 @@ class UnknownName(KeyError):
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         known = list(known)
-        alike = difflib.get_close_matches(name, known, n=3, cutoff=0.5)
+        alike = difflib.get_close_matches(name, known, n=3, cutoff=0.4)
         ending = f"did you mean {' or '.join(alike)}?" if alike else f"there is {', '.join(known)}"
         self._message = f"no {kind} {name!r}; {ending}"
         super().__init__(self._message)

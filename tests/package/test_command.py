@@ -1,0 +1,125 @@
+"""The command ``dielectric-actuator``, in this process."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from dielectric_actuator import Actuator, command, native, presets
+from dielectric_actuator.kept import KeptTable
+
+
+def run(capsys, *words) -> tuple[int, str, str]:
+    code = command.main([str(word) for word in words])
+    printed = capsys.readouterr()
+    return code, printed.out, printed.err
+
+
+def test_a_run_is_printed_written_and_drawn(capsys, tmp_path):
+    code, out, _ = run(capsys, "run", "--phi", 0.6, "--plot", tmp_path / "out.png", "--csv", tmp_path / "out.csv")
+    assert code == 0 and "stretch from 1 to 1.23157" in out and "not pulled in" in out
+    assert (tmp_path / "out.png").read_bytes().startswith(b"\x89PNG")
+    with (tmp_path / "out.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 801 and float(rows[-1]["time"]) == 80.0
+
+
+def test_a_collapse_is_drawn_too(capsys, tmp_path):
+    code, out, _ = run(capsys, "run", "--preset", "pull_in", "--plot", tmp_path / "out.png")
+    assert code == 0 and "pulled in at time 38.6058" in out
+
+
+@pytest.mark.parametrize("name", presets.names())
+def test_every_preset_moves(capsys, name):
+    preset = presets.load(name)
+    with Actuator() as actuator:
+        response = actuator.run(
+            preset.start_values, stop_time=preset.stop_time, communication_step=preset.communication_step
+        )
+    assert np.ptp(response["lambda"]) > 0.05
+    code, out, _ = run(capsys, "presets", name)
+    assert code == 0 and preset.title in out
+    assert name in run(capsys, "presets")[1]
+
+
+def test_thresholds_are_printed(capsys):
+    code, out, _ = run(capsys, "thresholds", "--phi", 0.3)
+    assert code == 0 and "0.6469836322448275" in out and "1.016397327212915" in out
+    assert run(capsys, "thresholds", "--phi", 0.8)[1].count("none") == 1
+
+
+@pytest.mark.parametrize("words, message", [
+    (["run", "--fi", "0.6"], "no variable 'fi'; did you mean phi"),
+    (["run", "--phi", "high"], "phi is 'high'; it must be a number"),
+    (["run", "--stop-tme", "fast"], "no option or variable 'stop-tme'"),
+    (["run", "--c", "-1"], "c = -1 is below its minimum"),
+    (["run", "--preset", "stp"], "no preset 'stp'; did you mean step"),
+    (["run", "--fmu", "none.fmu"], "no FMU at none.fmu"),
+    (["thresholds", "phi"], "'phi' is no option"),
+    (["presets", "--phi=1"], "variables mean nothing here"),
+    (["fit", "none.csv", "--free", "c"], "none.csv"),
+])  # fmt: skip
+def test_an_error_is_one_line(capsys, words, message):
+    code, _, err = run(capsys, *words)
+    assert code in (1, 2) and message in err and err.startswith("error: ") and err.count("\n") == 1
+
+
+def test_a_sweep_is_a_table_of_all_combinations(capsys, tmp_path):
+    path = tmp_path / "sweep.csv"
+    axes = ["--vary", "phi=0.5:0.7:3", "--vary", "S=0:0.1:2"]
+    code, out, err = run(capsys, "sweep", *axes, "--E_s", 0.01, "--output", path)
+    assert code == 0 and str(path) in out and "6 of 6" in err
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    assert [(float(row["phi"]), float(row["S"]), row["E_s"]) for row in rows[:3]] == [
+        (0.5, 0.0, "0.01"), (0.5, 0.1, "0.01"), (0.6, 0.0, "0.01"),
+    ]  # fmt: skip
+    assert [row["pulled_in"] for row in rows] == ["False"] * 6
+    assert not list(tmp_path.glob("*.unfinished"))
+
+
+def test_an_interrupted_sweep_goes_on_from_what_is_done(capsys, tmp_path, monkeypatch):
+    path, axes = tmp_path / "sweep.csv", ["--vary", "phi=0.1:0.6:20000", "--stop-time", "20"]
+    whole, calls = native.ensemble, []
+
+    def stopped(*scenes, **options):
+        calls.append(1)
+        if len(calls) == 2:
+            raise KeyboardInterrupt
+        return whole(*scenes, **options)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(native, "ensemble", stopped)
+        code, _, err = run(capsys, "sweep", *axes, "--output", path)
+    assert code == 130 and "interrupted" in err and not path.exists()
+    # a line that was being written does not count
+    unfinished = tmp_path / "sweep.csv.unfinished"
+    unfinished.write_text(unfinished.read_text() + "0.3,0.")
+    code, _, err = run(capsys, "sweep", "--vary", "phi=0.1:0.5:20000", "--output", path)
+    assert code == 2 and "unfinished rows of other work" in err
+    code, _, err = run(capsys, "sweep", *axes, "--output", path)
+    assert code == 0 and "20000 scenes, going on from 8192" in err
+    voltages = np.loadtxt(path, delimiter=",", skiprows=1, usecols=0)
+    np.testing.assert_array_equal(voltages, np.linspace(0.1, 0.6, 20000))
+
+
+def test_a_table_without_rows_is_taken_over(tmp_path):
+    with KeptTable(tmp_path / "a.csv", "one"):
+        pass
+    with KeptTable(tmp_path / "a.csv", "other") as table:
+        table.add({"x": np.arange(2)})
+        assert table.complete().read_text() == "x\n0\n1\n"
+
+
+def test_a_fit_of_a_file(capsys, tmp_path):
+    time = np.arange(0.0, 100.0, 0.5)
+    voltage = np.where(time < 50, 0.5, 0.2)
+    stretch, _ = native.sensitivities({"gamma_s": 0.07}, time, voltage, interpolation="hold")
+    data = tmp_path / "data.csv"
+    np.savetxt(data, np.column_stack([time, voltage, stretch]), delimiter=",", header="t,V,lambda", comments="")
+    code, out, err = run(
+        capsys, "fit", data, "--free", "gamma_s", "--time", "t", "--voltage", "V", "--stretch", "lambda", "--hold",
+        "--preset", tmp_path / "found.json",
+    )  # fmt: skip
+    assert code == 0, err
+    assert "gamma_s" in out and presets.load(tmp_path / "found.json").start_values["gamma_s"] == pytest.approx(0.07)
