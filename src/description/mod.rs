@@ -105,8 +105,12 @@ fn description<M: Model>() -> FmiModelDescription {
 fn unit_definitions<M: Model>() -> Vec<schema::Unit> {
     let mut units: Vec<&Unit> = Vec::new();
     for variable in M::VARIABLES {
-        if units.iter().all(|unit| unit.name != variable.unit.name) {
-            units.push(variable.unit);
+        let unit = variable.unit;
+        match units.iter_mut().find(|known| known.name == unit.name) {
+            // An angle can be displayed in degrees, an angular frequency of the same name cannot.
+            Some(known) if known.displayed.len() < unit.displayed.len() => *known = unit,
+            Some(_) => {}
+            None => units.push(unit),
         }
     }
     units.into_iter().map(unit_definition).collect()
