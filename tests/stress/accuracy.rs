@@ -177,8 +177,8 @@ pub fn play(scene: &Scene) -> Played {
     let mut passed = 0.0;
     for (index, step) in scene.steps.iter().enumerate() {
         if let Some(change) = step.change {
+            exact.set_inputs(&load, &change);
             load = change;
-            exact.set_inputs();
         }
         let before = exact.stretch.value();
         let mut varied = exact.varied();

@@ -163,6 +163,8 @@ pub struct Taylor<N = Doubled> {
     pub time: Doubled,
     /// The time when the inputs were set.
     since: Doubled,
+    /// What the angle of the drive is ahead of ωt + ϑ since its frequency was changed.
+    lead: Doubled,
 }
 
 impl Taylor {
@@ -180,6 +182,7 @@ impl Taylor {
         let along = |value, along| Tangent { value, along };
         Taylor {
             since: self.since,
+            lead: self.lead,
             ..Taylor::starting(
                 [along(value, [1.0, 0.0]), along(rate, [0.0, 1.0])],
                 self.time,
@@ -201,12 +204,16 @@ impl<N: Number> Taylor<N> {
             rate,
             time,
             since: time,
+            lead: 0.0.into(),
         }
     }
 
-    /// The inputs are those of a load from here on.
-    pub fn set_inputs(&mut self) {
+    /// The inputs are those of a new load from here on; the drive goes on from its angle
+    /// where its frequency changes.
+    pub fn set_inputs(&mut self, before: &Load, after: &Load) {
         self.since = self.time;
+        let [before, after] = [before, after].map(|load| Doubled::from(load.harmonic[1]));
+        self.lead = self.lead + (before - after) * self.time;
     }
 
     /// Follows the motion for `duration`.
@@ -313,7 +320,7 @@ impl<N: Number> Taylor<N> {
         let mut series = [N::from(0.0.into()); TERMS];
         let [amplitude, frequency, phase] = load.harmonic.map(Doubled::from);
         if load.harmonic[0] != 0.0 {
-            let [sine, cosine] = (frequency * self.time + phase).sin_cos();
+            let [sine, cosine] = (frequency * self.time + phase + self.lead).sin_cos();
             let turned = [sine, cosine, -sine, -cosine];
             let mut factor = amplitude;
             for k in 0..TERMS {
