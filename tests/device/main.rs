@@ -1,5 +1,8 @@
 //! The real actuator against multiprecision references, closed forms and the balance of energy.
 
+mod balance;
 mod periods;
+mod plain;
 mod scene;
 mod scenes;
+mod steady;

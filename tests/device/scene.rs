@@ -2,7 +2,7 @@
 
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::{DeviceMotion, Exchanged, Source, Stored};
-use dielectric_elastomer_actuator::actuator::drive::Harmonic;
+use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::coupled::{
@@ -71,6 +71,12 @@ impl Scene {
         device.series_resistance = get("R_s");
         device.parallel_conductance = get("G_p");
         device.conductivity = get("sigma");
+        if given.get("E_c").is_some() {
+            device.conduction_field = get("E_c");
+        }
+        if given.get("n_s").is_some() {
+            device.surfaces = get("n_s");
+        }
         let branches = given.get("branches").and_then(Value::as_array);
         let branches = branches.map_or(&[][..], Vec::as_slice);
         for (k, branch) in branches.iter().enumerate() {
@@ -94,6 +100,22 @@ impl Scene {
             level / scales.source(device.source),
             get("P") / scales.force,
         );
+        let polynomial = |key: &str, unit: f64| {
+            let terms = given.get(key)?.as_array()?;
+            let mut input = Polynomial::constant(number(&terms[0]) / unit);
+            let mut size = 1.0 / unit;
+            for (order, term) in terms.iter().enumerate().skip(1) {
+                size *= order as f64 * scales.time.value();
+                input.set_derivative(order, size * number(term));
+            }
+            Some(input)
+        };
+        if let Some(voltage) = polynomial("V_polynomial", scales.voltage) {
+            drive.voltage = voltage;
+        }
+        if let Some(prestress) = polynomial("P_polynomial", scales.force) {
+            drive.prestress = prestress;
+        }
         if given.get("V_ac").is_some() {
             drive.harmonic = Harmonic {
                 amplitude: get("V_ac") / scales.voltage,

@@ -204,6 +204,30 @@ impl LocalDevice<'_> {
         }
     }
 
+    /// What an ideal source exchanges at once where it has been stepped here from `previous`,
+    /// in units of E0. To charge a capacitance C by a step ∆V costs C∆V²/2 in the resistance,
+    /// however small that is.
+    #[must_use]
+    pub fn exchanged_by_step(&self, previous: f64, stage: &Stage) -> Exchanged {
+        let mut exchanged = Exchanged::from_integrals(&[0.0; MOST_INTEGRALS]);
+        let (source, capacitance) = (
+            self.load(0.0).source,
+            self.capacitance(self.stretch(stage.position)),
+        );
+        let step = source - previous;
+        match self.device.port.source {
+            Source::Voltage if !self.device.has_charge_state() => {
+                exchanged.electrical = source * capacitance * step;
+                exchanged.series = 0.5 * capacitance * step * step;
+            }
+            Source::Charge => {
+                exchanged.electrical = 0.5 * (source + previous) * step / capacitance;
+            }
+            Source::Voltage | Source::Current => {}
+        }
+        exchanged
+    }
+
     /// How far the true field is below that of breakdown; infinite where none is given.
     #[must_use]
     pub fn breakdown_margin(&self, load: &Load, stage: &Stage) -> f64 {
