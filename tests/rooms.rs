@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 const LAW: &[(&str, &[&str], &[&str])] = &[
     ("solver", &[], &["fearless_simd", "nalgebra", "serde"]),
     ("actuator", &["solver"], &["fearless_simd", "serde"]),
-    ("pull_in", &["actuator"], &[]),
+    ("pull_in", &["actuator", "solver"], &[]),
     ("scene", &["actuator", "model", "solver"], &["serde"]),
     ("model", &["solver", "variables"], &["serde"]),
     ("shortest", &[], &[]),

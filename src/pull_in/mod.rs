@@ -20,6 +20,7 @@
 //! about a microsecond, allocates nothing, and gives a finite answer or `None`
 //! for all coefficients and prestresses up to 1e6 in size.
 
+pub mod device;
 mod dynamic;
 mod fold;
 mod quasi_static;

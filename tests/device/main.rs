@@ -6,3 +6,4 @@ mod plain;
 mod scene;
 mod scenes;
 mod steady;
+mod thresholds;

@@ -92,6 +92,17 @@ impl Permittivity {
             .mul_add(x, number(k1));
         [value, slope]
     }
+
+    /// λ³e + ¼λ⁴e', the factor of the squared voltage in the force.
+    #[inline(always)]
+    pub fn pull<N: Number>(&self, stretch: N) -> N {
+        let cube = stretch * stretch * stretch;
+        if self.is_constant() {
+            return cube;
+        }
+        let [value, slope] = self.at(stretch);
+        cube * (stretch * slope).mul_add(stretch.same(0.25), value)
+    }
 }
 
 impl<'a> LocalDevice<'a> {
@@ -194,7 +205,7 @@ impl<'a> LocalDevice<'a> {
     /// The conductance of all leaks together, and its derivative by the voltage times the
     /// voltage.
     #[inline(always)]
-    pub(super) fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2] {
+    pub fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2] {
         let port = &self.device.port;
         let number = |value: f64| square.same(value);
         let fixed = number(port.conductance);
@@ -210,9 +221,10 @@ impl<'a> LocalDevice<'a> {
         [fixed + strong, strong * ratio]
     }
 
-    /// x'' without the damping, its inertia, and the damping.
+    /// The force without the damping, the inertia, and the damping: x'' is (force − damping ·
+    /// x')/inertia.
     #[inline(always)]
-    pub(super) fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3] {
+    pub fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3] {
         let device = self.device;
         let p = Powers::of(self.stretch(stage.position));
         let number = |value: f64| p.stretch.same(value);
@@ -226,11 +238,7 @@ impl<'a> LocalDevice<'a> {
                 .mul_add(p.square, number(self.cubic))
                 .mul_add(p.square, number(self.linear));
         let voltage = self.membrane_voltage(load, stage);
-        let mut electric = p.stretch * p.square;
-        if !device.permittivity.is_constant() {
-            let [value, slope] = device.permittivity.at(p.stretch);
-            electric = electric * (p.stretch * slope).mul_add(number(0.25), value);
-        }
+        let electric = device.permittivity.pull(p.stretch);
         let inertial = number(6.0) * inverse_sixth * p.inverse * stage.rate * stage.rate;
         let mut force = inertial - elastic - surface
             + (load.prestress + number(self.preload))

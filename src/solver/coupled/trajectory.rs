@@ -36,21 +36,10 @@ pub enum Event {
     Margin,
 }
 
-/// How far an advance came.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress {
-    /// As far as asked.
-    Whole,
-    /// To an event, this long after the begin of the advance.
-    Stopped {
-        /// The event.
-        event: Event,
-        /// The time from the begin of the advance.
-        after: f64,
-    },
-}
+pub use crate::solver::outcome::Failure;
 
-pub use crate::solver::trajectory::Failure;
+/// How far an advance came.
+pub type Progress = crate::solver::outcome::Progress<Event>;
 
 /// The motion over one step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -276,7 +265,10 @@ impl Trajectory {
             {
                 let after = step - target.since(at);
                 self.arrive(at);
-                return Ok(Progress::Stopped { event, after });
+                return Ok(Progress::Stopped {
+                    limit: event,
+                    after,
+                });
             }
             let rest = target.since(self.end());
             if rest <= LAST_BITS * step {

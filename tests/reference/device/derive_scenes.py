@@ -55,15 +55,22 @@ def radau(count):
     return (1 + roots) / 2, matrix / 2
 
 
+def number(value):
+    return REAL(str(value))
+
+
+def step(f):
+    """The derivative of a function evaluated a tiny imaginary step aside."""
+    return np.imag(f) / TINY
+
+
 class Actuator:
     """The energies and dissipations of an actuator in SI units."""
 
     def __init__(self, parameters):
-        number = lambda value: REAL(str(value))
         self.p = {k: number(v) for k, v in parameters.items() if not isinstance(v, (list, dict))}
         self.branches = [
-            [number(b[0]), number(b[1]), None if b[2] is None else number(b[2])]
-            for b in parameters.get("branches", [])
+            [number(b[0]), number(b[1]), None if b[2] is None else number(b[2])] for b in parameters.get("branches", [])
         ]
         self.voltage = [number(v) for v in parameters.get("V_polynomial", [self["V"]])]
         self.force = [number(v) for v in parameters.get("P_polynomial", [self["P"]])]
@@ -131,7 +138,6 @@ class Actuator:
         """d/dt of (λ, λ', Q, ξ…, losses and supplies) at times t, states along the last axis."""
         x, v, q = y[0], y[1], y[2]
         xis = y[3 : 3 + len(self.branches)]
-        step = lambda f: np.imag(f) / TINY
         shifted = x + 1j * TINY
         voltage = self.membrane(x, t, q)
         force = -step(self.energy(shifted, list(xis)) + 0 * shifted)
@@ -182,7 +188,6 @@ def jacobian(actuator, t, y, sizes, active):
 def integrate(actuator, y, times, count, longest, fastest):
     c, a = radau(count)
     active = 3 + len(actuator.branches)
-    scale = np.ones(active)
     t, rows = REAL(0), []
     step = REAL(fastest)
     period = REAL(longest)
@@ -248,7 +253,7 @@ def derive(name, title, parameters, stop, period, fastest):
     digits = int(-np.log10(max(worst, 1e-19)))
     print(f"{name}: {digits} digits agree")
     text = {k: v if isinstance(v, list) else str(v) for k, v in parameters.items()}
-    file = {"scene": name, "title": title, "eps0": str("8.8541878188e-12"), "parameters_SI": text}
+    file = {"scene": name, "title": title, "eps0": "8.8541878188e-12", "parameters_SI": text}
     initial = float(charge_at_start(actuator))
     file["start"] = {"lambda": "1", "lambda_dot": "0", "charge_C": repr(initial)}
     file |= {"agreed_digits": digits, "methods": __doc__.split("\n\n")[1].replace("\n", " ")}
@@ -271,55 +276,102 @@ def main():
         "own_stiff_rc",
         "5.5 kV step through 12 ohm (RC = 1.5e-6 periods), uncharged at start",
         SHEET | {"V": "5500", "R_s": "12"},
-        6 * PERIOD, PERIOD, 2e-10,
+        6 * PERIOD,
+        PERIOD,
+        2e-10,
     )
     derive(
         "own_linear_damping",
         "5.8 kV step, dashpot 0.03 N s/m",
         SHEET | {"V": "5800", "b": "0.03"},
-        6 * PERIOD, PERIOD, 1e-5,
+        6 * PERIOD,
+        PERIOD,
+        1e-5,
     )
     derive(
         "own_current",
         "0.2 mA from 0 charge, with a fixed resistor and a leaking material",
         SHEET | {"I": "2e-4", "G_p": "1e-9", "sigma": "1e-10", "R_s": "1e5"},
-        6 * PERIOD, PERIOD, 1e-5,
+        6 * PERIOD,
+        PERIOD,
+        1e-5,
     )
     derive(
         "own_overdamped",
         "6 kV step, viscosity far above critical (zeta = 80)",
         SHEET | {"V": "6000", "eta": "7500"},
-        60 * PERIOD, PERIOD, 1e-8,
+        60 * PERIOD,
+        PERIOD,
+        1e-8,
     )
     derive(
         "own_ramp",
         "voltage and force as polynomials of the time, 2 Mohm",
-        SHEET | {
-            "V": "0", "V_polynomial": ["1000", "2e6", "-4e8"], "R_s": "2e6",
-            "P": "0", "P_polynomial": ["0", "40", "-4e3"],
+        SHEET
+        | {
+            "V": "0",
+            "V_polynomial": ["1000", "2e6", "-4e8"],
+            "R_s": "2e6",
+            "P": "0",
+            "P_polynomial": ["0", "40", "-4e3"],
         },
-        5 * PERIOD, PERIOD, 1e-5,
+        5 * PERIOD,
+        PERIOD,
+        1e-5,
     )
     derive(
         "own_everything",
         "3 layers, surfaces, Gent, permittivity, load, both dampings, three branches, all leaks, AC and force",
-        SHEET | {
-            "n": "3", "gamma_s": "0.6", "tau_s": "0.4", "E_s": "1.1", "n_s": "4", "J": "40", "m": "2e-5", "k": "60",
-            "l_k": "18e-3", "k1": "-0.11", "k2": "0.02", "k3": "-0.003", "b": "0.006", "eta": "1.5",
+        SHEET
+        | {
+            "n": "3",
+            "gamma_s": "0.6",
+            "tau_s": "0.4",
+            "E_s": "1.1",
+            "n_s": "4",
+            "J": "40",
+            "m": "2e-5",
+            "k": "60",
+            "l_k": "18e-3",
+            "k1": "-0.11",
+            "k2": "0.02",
+            "k3": "-0.003",
+            "b": "0.006",
+            "eta": "1.5",
             "branches": [["120e3", "0.4e-3", None], ["60e3", "6e-3", "60"], ["40e3", "4e-6", None]],
-            "R_s": "3e5", "G_p": "2e-9", "sigma": "4e-9", "E_c": "3e7", "V": "4500", "V_ac": "1500",
-            "f": "700", "P": "0.4",
+            "R_s": "3e5",
+            "G_p": "2e-9",
+            "sigma": "4e-9",
+            "E_c": "3e7",
+            "V": "4500",
+            "V_ac": "1500",
+            "f": "700",
+            "P": "0.4",
         },
-        6 * PERIOD, PERIOD, 2e-7,
+        6 * PERIOD,
+        PERIOD,
+        2e-7,
     )
     derive(
         "own_yeoh_gravity",
         "Yeoh, ideal source, AC beside a bias, leakage, force and a compressed spring",
-        SHEET | {
-            "kappa2": "-0.0924", "kappa3": "0.0365", "V": "3000", "V_ac": "2500", "f": "410", "P": "0.05",
-            "k": "30", "l_k": "25e-3", "G_p": "1e-8", "sigma": "1e-9", "E_c": "2e7",
+        SHEET
+        | {
+            "kappa2": "-0.0924",
+            "kappa3": "0.0365",
+            "V": "3000",
+            "V_ac": "2500",
+            "f": "410",
+            "P": "0.05",
+            "k": "30",
+            "l_k": "25e-3",
+            "G_p": "1e-8",
+            "sigma": "1e-9",
+            "E_c": "2e7",
         },
-        6 * PERIOD, PERIOD, 1e-5,
+        6 * PERIOD,
+        PERIOD,
+        1e-5,
     )
 
 
