@@ -124,6 +124,7 @@ proptest! {
             voltage.set_derivative(1, unit * slope / period);
             set(&mut motion, &mut trajectory, Drive {
                 since: Double::ZERO,
+                lead: 0.0,
                 voltage,
                 prestress: Polynomial::constant(prestress),
                 harmonic: Harmonic {
