@@ -17,11 +17,11 @@
 
 use fearless_simd::Level;
 
-use crate::actuator::Fleet;
+use crate::actuator::Ensemble;
 use crate::scene::Scene;
 use crate::solver::State;
-use crate::solver::batch::{self, Arrival, Motion};
 use crate::solver::double::Double;
+use crate::solver::ensemble::{self, Arrival, Motion};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
@@ -31,7 +31,7 @@ use crate::solver::trajectory::{Failure, Progress, Trajectory};
 pub struct Outcome {
     /// The state at the end, or where the actuator collapsed.
     pub state: State,
-    /// The extremes of the stretch from the start to there, located exactly.
+    /// The extremes of the stretch from the start to there, located between the steps.
     pub extremes: Extremes,
     /// Whether and when it collapsed.
     pub collapse: Option<(Limit, f64)>,
@@ -40,42 +40,37 @@ pub struct Outcome {
 /// Follows each scene from time 0 to `end`, with the relative `tolerance` of the
 /// stretch, and returns the outcomes in their order.
 ///
-/// Scenes with the built-in alternating voltage and otherwise constant inputs
-/// share SIMD lanes; all others, and those that collapse, are followed one by one.
+/// Scenes with the built-in alternating voltage and otherwise constant inputs share SIMD lanes.
+/// All others are followed one by one, and so is the last part of those that collapse.
 ///
 /// # Errors
 /// Each outcome is a [`Failure`] where the integration cannot go on.
 #[must_use]
 pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome, Failure>> {
-    let abreast: Vec<usize> = (0..scenes.len())
-        .filter(|&index| Fleet::takes(&scenes[index].drive))
-        .collect();
-    let motions: Vec<_> = abreast
+    let motions: Vec<_> = scenes
         .iter()
-        .map(|&index| Motion {
-            equation: scenes[index].motion(),
-            start: scenes[index].start,
-            limits: scenes[index].limits,
+        .map(|scene| Motion {
+            equation: scene.motion(),
+            start: scene.start,
+            limits: scene.limits,
         })
         .collect();
     let span = [Double::ZERO, Double::new(end)];
-    let level = Level::new();
-    let arrivals = batch::follow(level, &mut Fleet::new(), &motions, span, tolerance);
-
-    let mut outcomes = vec![None; scenes.len()];
-    for (index, arrival) in abreast.into_iter().zip(arrivals) {
-        outcomes[index] = arrival.map(|Arrival { state, extremes }| {
-            Ok(Outcome {
-                state,
-                extremes,
-                collapse: None,
-            })
-        });
-    }
-    outcomes
+    let arrivals = ensemble::follow(
+        Level::new(),
+        &mut Ensemble::new(),
+        &motions,
+        span,
+        tolerance,
+    );
+    let outcome = |arrival: Arrival| Outcome {
+        state: arrival.state,
+        extremes: arrival.extremes,
+        collapse: collapse(arrival.progress),
+    };
+    arrivals
         .into_iter()
-        .zip(scenes)
-        .map(|(outcome, scene)| outcome.unwrap_or_else(|| follow_one(scene, end, tolerance)))
+        .map(|arrival| arrival.map(outcome))
         .collect()
 }
 
@@ -86,15 +81,19 @@ pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome,
 pub fn follow_one(scene: &Scene, end: f64, tolerance: f64) -> Result<Outcome, Failure> {
     let trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, tolerance);
     let mut trajectory = trajectory.recording_extremes();
-    let collapse = match trajectory.advance(scene, end)? {
-        Progress::Whole => None,
-        Progress::Stopped { limit, after } => Some((limit, after)),
-    };
+    let progress = trajectory.advance(scene, end)?;
     Ok(Outcome {
         state: trajectory.state(),
         extremes: trajectory
             .extremes()
             .unwrap_or(Extremes::at(scene.start.position)),
-        collapse,
+        collapse: collapse(progress),
     })
+}
+
+fn collapse(progress: Progress) -> Option<(Limit, f64)> {
+    match progress {
+        Progress::Whole => None,
+        Progress::Stopped { limit, after } => Some((limit, after)),
+    }
 }

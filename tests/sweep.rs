@@ -1,9 +1,9 @@
 //! Many scenes at once against the same scenes one by one.
 
-use dielectric_elastomer_actuator::actuator::Fleet;
+use dielectric_elastomer_actuator::actuator::Ensemble;
 use dielectric_elastomer_actuator::scene::Scene;
-use dielectric_elastomer_actuator::solver::batch::{self, Motion};
 use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::ensemble::{self, Motion};
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;
@@ -83,7 +83,7 @@ fn a_motion_next_to_rest_is_not_given_back() {
         limits: scene.limits,
     };
     let span = [Double::ZERO, Double::new(5000.0)];
-    let arrivals = batch::follow(Level::new(), &mut Fleet::new(), &[motion], span, 1e-9);
+    let arrivals = ensemble::follow(Level::new(), &mut Ensemble::new(), &[motion], span, 1e-9);
     let arrival = arrivals[0].expect("it shares lanes all the way");
     assert_eq!(arrival.state, scene.start);
 }

@@ -7,19 +7,19 @@
 //! * [`drive`]: voltage and prestress as functions of time;
 //! * [`motion`]: the equation of motion (Eq. 16) and its energy (Eq. 18);
 //! * [`device`]: a real actuator: load, losses, stiffening, electrical port;
-//! * [`fleet`]: many of them side by side;
+//! * [`ensemble`]: many of them side by side;
 //! * [`scales`]: the only place with SI units.
 
 pub mod coefficients;
 pub mod device;
 pub mod drive;
-pub mod fleet;
+pub mod ensemble;
 pub mod motion;
 pub mod parameters;
 pub mod scales;
 
 pub use coefficients::Coefficients;
 pub use drive::Drive;
-pub use fleet::Fleet;
+pub use ensemble::Ensemble;
 pub use motion::Motion;
 pub use parameters::Parameters;

@@ -4,7 +4,7 @@
 //! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
 //! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
 //! * `hop`: short steps of 4 nodes, where the equation changes at each of them;
-//! * [`batch`]: many motions at once, one in each lane;
+//! * [`ensemble`]: many motions at once, one in each lane;
 //! * [`coupled`]: the same with first-order states and dissipation;
 //! * [`step_control`]: how long the next substep may be;
 //! * [`linearized`]: the motion beside a motion;
@@ -15,10 +15,10 @@
 //! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives;
 //! * [`trajectory`]: segments one after another, reused where the motion repeats.
 
-pub mod batch;
 pub mod collocation;
 pub mod coupled;
 pub mod double;
+pub mod ensemble;
 pub mod extremes;
 mod hop;
 pub mod jet;

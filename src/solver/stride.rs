@@ -271,28 +271,6 @@ pub fn expected(contraction: f64) -> f64 {
     GROWTH * contraction.max(LEAST)
 }
 
-/// The state a little later, where strides can go there.
-pub fn state_after<E: Equation>(
-    level: Level,
-    equation: &E,
-    control: StepControl,
-    time: Double,
-    state: State,
-    offset: f64,
-) -> Option<State> {
-    let mut way = Way {
-        begin: time,
-        now: Double::ZERO,
-        state,
-        target: Double::new(offset),
-        clear: (f64::NEG_INFINITY, f64::INFINITY),
-        budget: MOST_SHORT,
-    };
-    let mut strides = Strides::NONE;
-    let end = strides.go(level, equation, control, &mut way);
-    (end == End::Reached).then_some(way.state)
-}
-
 /// Estimate of the error at the end of a stride. A Legendre series that falls
 /// geometrically reaches at degree 4P, the first that is integrated wrongly,
 /// the square of what it has at degree 2P, by its size.

@@ -1,0 +1,176 @@
+//! Many actuators under alternating voltages, their numbers in SIMD lanes.
+
+use fearless_simd::Simd;
+
+use super::coefficients::Coefficients;
+use super::drive::Drive;
+use super::motion::{self, Load, Motion};
+use crate::solver::double::Double;
+use crate::solver::ensemble::{self, LANES, Row};
+use crate::solver::lanes::Lanes;
+use crate::solver::number::Number;
+
+/// Blocks of steps after which the angle of the drive is worked out anew from the time.
+const RENEWED: u32 = 32;
+
+/// The equations of motion of as many actuators as there are lanes. Voltage and
+/// prestress are constant but for the built-in alternating voltage.
+#[derive(Clone, Copy, Debug)]
+pub struct Ensemble {
+    coefficients: Coefficients<Row>,
+    voltage: Row,
+    prestress: Row,
+    amplitude: Row,
+    /// Sine and cosine of ωt + ϑ.
+    angle: [Row; 2],
+    /// Sine and cosine of ω times the step.
+    turn: [Row; 2],
+    /// Blocks since the angle was worked out from the time.
+    since_renewal: [u32; LANES],
+}
+
+impl Ensemble {
+    /// Actuators without a drive.
+    #[must_use]
+    pub fn new() -> Ensemble {
+        Ensemble {
+            coefficients: Coefficients {
+                inertia: [1.0; LANES],
+                linear: [1.0; LANES],
+                cubic: [0.0; LANES],
+                quintic: [0.0; LANES],
+            },
+            voltage: [0.0; LANES],
+            prestress: [0.0; LANES],
+            amplitude: [0.0; LANES],
+            angle: [[0.0; LANES], [1.0; LANES]],
+            turn: [[0.0; LANES], [1.0; LANES]],
+            since_renewal: [0; LANES],
+        }
+    }
+}
+
+impl Default for Ensemble {
+    fn default() -> Ensemble {
+        Ensemble::new()
+    }
+}
+
+impl ensemble::Ensemble for Ensemble {
+    type Equation = Motion;
+    type Packed<N: Number> = Packed<N>;
+
+    fn takes(motion: &Motion) -> bool {
+        motion.drive.voltage.is_constant() && motion.drive.prestress.is_constant()
+    }
+
+    fn put(&mut self, lane: usize, motion: &Motion, time: &Double, step: f64) {
+        let Coefficients {
+            inertia,
+            linear,
+            cubic,
+            quintic,
+        } = motion.coefficients;
+        self.coefficients.inertia[lane] = inertia;
+        self.coefficients.linear[lane] = linear;
+        self.coefficients.cubic[lane] = cubic;
+        self.coefficients.quintic[lane] = quintic;
+        let Drive {
+            voltage,
+            prestress,
+            harmonic,
+            ..
+        } = &motion.drive;
+        self.voltage[lane] = voltage.value();
+        self.prestress[lane] = prestress.value();
+        self.amplitude[lane] = harmonic.amplitude;
+        let (sine, cosine) = (harmonic.frequency * step).sin_cos();
+        (self.turn[0][lane], self.turn[1][lane]) = (sine, cosine);
+        self.since_renewal[lane] = RENEWED;
+        self.see_from(lane, motion, time);
+    }
+
+    fn see_from(&mut self, lane: usize, motion: &Motion, time: &Double) {
+        self.since_renewal[lane] += 1;
+        if self.since_renewal[lane] < RENEWED {
+            return;
+        }
+        self.since_renewal[lane] = 0;
+        let (sine, cosine) = motion.drive.angle(*time).sin_cos();
+        (self.angle[0][lane], self.angle[1][lane]) = (sine, cosine);
+    }
+
+    #[inline(always)]
+    fn pack<S: Simd, V: Lanes<S, LANES>>(&self, simd: S) -> Packed<V> {
+        let load = |row: &Row| V::load(simd, row);
+        Packed {
+            coefficients: Coefficients {
+                inertia: load(&self.coefficients.inertia),
+                linear: load(&self.coefficients.linear),
+                cubic: load(&self.coefficients.cubic),
+                quintic: load(&self.coefficients.quintic),
+            },
+            voltage: load(&self.voltage),
+            prestress: load(&self.prestress),
+            amplitude: load(&self.amplitude),
+            angle: [load(&self.angle[0]), load(&self.angle[1])],
+            turn: [load(&self.turn[0]), load(&self.turn[1])],
+        }
+    }
+
+    #[inline(always)]
+    fn keep<S: Simd, V: Lanes<S, LANES>>(&mut self, packed: &Packed<V>) {
+        self.angle = [packed.angle[0].store(), packed.angle[1].store()];
+    }
+}
+
+/// An [`Ensemble`] with its numbers in lanes.
+#[derive(Clone, Copy, Debug)]
+pub struct Packed<N> {
+    coefficients: Coefficients<N>,
+    voltage: N,
+    prestress: N,
+    amplitude: N,
+    angle: [N; 2],
+    turn: [N; 2],
+}
+
+impl<N: Number> ensemble::Packed<N> for Packed<N> {
+    #[inline(always)]
+    fn turn(&mut self) {
+        let [sine, cosine] = self.angle;
+        let [by_sine, by_cosine] = self.turn;
+        self.angle = [
+            sine.mul_add(by_cosine, cosine * by_sine),
+            cosine * by_cosine - sine * by_sine,
+        ];
+    }
+
+    #[inline(always)]
+    fn acceleration(&self, position: N, rate: N) -> N {
+        let voltage = self.angle[0].mul_add(self.amplitude, self.voltage);
+        let load = Load {
+            voltage_squared: voltage * voltage,
+            prestress: self.prestress,
+        };
+        motion::acceleration(&self.coefficients, load, position, rate)
+    }
+
+    /// (5λ⁻⁶ + a1 + 3(|a3| + φ²)λ² + 5a5 λ⁴)/(c + 2λ⁻⁶): the terms of the stiffness by size.
+    #[inline(always)]
+    fn stiffness(&self, position: N) -> N {
+        let number = |value: f64| position.same(value);
+        let Coefficients {
+            inertia,
+            linear,
+            cubic,
+            quintic,
+        } = self.coefficients;
+        let largest = self.voltage.magnitude() + self.amplitude.magnitude();
+        let square = position * position;
+        let sixth = square * square * square;
+        let lower = number(3.0) * (cubic.magnitude() + largest * largest);
+        let bracket = linear.magnitude() + square * (lower + square * number(5.0) * quintic);
+        (number(5.0) + sixth * bracket) / (inertia * sixth + number(2.0))
+    }
+}
