@@ -105,6 +105,7 @@ mod tests {
         }
         let found: Vec<f64> = turns(&motions, 3, -begin.sin()).collect();
         assert_eq!(found.len(), 1);
-        assert!((found[0] + 1.0).abs() < 1e-13, "{}", found[0]);
+        // The polynomial misses the eighth difference of f, 1e-8, by some 1e-5 of it.
+        assert!((found[0] + 1.0).abs() < 1e-12, "{}", found[0]);
     }
 }
