@@ -1,5 +1,6 @@
 //! `cargo fmu`: builds the shared library for each platform, refuses a bad one, and packs the
 //! FMU; `cargo fmu describe`: writes the checked-in `modelDescription.xml`.
+#![forbid(unsafe_code)]
 
 mod archive;
 mod guide;

@@ -4,6 +4,7 @@
 //! `python/dielectric_actuator/native.py` calls them. Arrays are those of NumPy, laid out row by row;
 //! the columns have the names that [`dea_scene_names`] and [`dea_known_names`] tell. No panic
 //! leaves a function, and no thread outlives it.
+#![allow(unsafe_code)] // C functions
 
 use std::ffi::{CStr, c_char};
 use std::panic::{AssertUnwindSafe, catch_unwind};
