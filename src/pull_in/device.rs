@@ -280,19 +280,12 @@ impl Curves {
         if at_one == 0.0 {
             return Some(1.0);
         }
-        let stretches: Box<dyn Iterator<Item = f64>> = if at_one < 0.0 {
-            Box::new(self.grid().map(|point| self.stretch(point)))
+        let holds = |stretch: f64| force(stretch) * at_one > 0.0;
+        if at_one < 0.0 {
+            first_change(self.grid().map(|point| self.stretch(point)), holds)
         } else {
-            Box::new(self.contracted())
-        };
-        let mut last = 1.0;
-        for stretch in stretches {
-            if force(stretch) * at_one <= 0.0 {
-                return Some(bisect(last, stretch, |x| force(x) * at_one > 0.0));
-            }
-            last = stretch;
+            first_change(self.contracted(), holds)
         }
-        None
     }
 
     /// Stretches below 1, downwards.
@@ -431,6 +424,18 @@ fn first_of(first: Point, last: Point, dip: Point) -> Point {
     } else {
         first
     }
+}
+
+/// Where a condition that holds at 1 first ceases to hold along these stretches.
+fn first_change(stretches: impl Iterator<Item = f64>, holds: impl Fn(f64) -> bool) -> Option<f64> {
+    let mut last = 1.0;
+    for stretch in stretches {
+        if !holds(stretch) {
+            return Some(bisect(last, stretch, holds));
+        }
+        last = stretch;
+    }
+    None
 }
 
 /// The last number between `from`, where a condition holds, and `to`, where it does not.

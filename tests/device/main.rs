@@ -3,7 +3,9 @@
 mod balance;
 mod periods;
 mod plain;
+mod published;
 mod scene;
 mod scenes;
 mod steady;
 mod thresholds;
+mod trajectory;

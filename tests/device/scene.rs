@@ -146,6 +146,16 @@ impl Scene {
 
 /// A motion from rest at λ = 1 with this charge.
 pub fn start(motion: &DeviceMotion, charge: f64, tolerance: f64) -> Trajectory {
+    start_between(motion, charge, tolerance, LIMITS)
+}
+
+/// The same between other limits.
+pub fn start_between(
+    motion: &DeviceMotion,
+    charge: f64,
+    tolerance: f64,
+    limits: Limits,
+) -> Trajectory {
     let mut state = FullState::of(State {
         position: 1.0,
         rate: 0.0,
@@ -157,7 +167,7 @@ pub fn start(motion: &DeviceMotion, charge: f64, tolerance: f64) -> Trajectory {
     for _ in motion.device.present_branches() {
         *states.next().expect("room") = 1.0;
     }
-    Trajectory::new(state, Double::ZERO, LIMITS, tolerance)
+    Trajectory::new(state, Double::ZERO, limits, tolerance)
 }
 
 /// The present of a motion.

@@ -19,6 +19,7 @@ use crate::actuator::Drive;
 use crate::actuator::drive::LocalDrive;
 use crate::solver::coupled::{MOST_STATES, Slope, Stage};
 use crate::solver::double::Double;
+use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
 /// What the drive gives at a time, or at lanes of times.
@@ -225,6 +226,12 @@ impl<'a> LocalDevice<'a> {
     /// x')/inertia.
     #[inline(always)]
     pub fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3] {
+        self.forces_at(load.prestress, self.membrane_voltage(load, stage), stage)
+    }
+
+    /// The same under this voltage at the membrane.
+    #[inline(always)]
+    fn forces_at<N: Number>(&self, prestress: N, voltage: N, stage: &Stage<N>) -> [N; 3] {
         let device = self.device;
         let p = Powers::of(self.stretch(stage.position));
         let number = |value: f64| p.stretch.same(value);
@@ -237,11 +244,10 @@ impl<'a> LocalDevice<'a> {
             * number(self.quintic)
                 .mul_add(p.square, number(self.cubic))
                 .mul_add(p.square, number(self.linear));
-        let voltage = self.membrane_voltage(load, stage);
         let electric = device.permittivity.pull(p.stretch);
         let inertial = number(6.0) * inverse_sixth * p.inverse * stage.rate * stage.rate;
         let mut force = inertial - elastic - surface
-            + (load.prestress + number(self.preload))
+            + (prestress + number(self.preload))
             + voltage * voltage * electric;
         for (k, branch) in device.present_branches().enumerate() {
             let g = self.branch_state(&stage.internal, k);
@@ -252,6 +258,31 @@ impl<'a> LocalDevice<'a> {
         let damping = number(6.0 * device.damping.viscosity)
             .mul_add(p.inverse_square, number(device.damping.linear));
         [force, inertia, damping]
+    }
+
+    /// The angular frequency of small oscillations around a stage, nothing else moving: under a
+    /// source of voltage the voltage at the membrane is held, under one of current or charge the
+    /// charge, and the dashpots of the branches stand. 0 where the stage is unstable.
+    #[must_use]
+    pub fn small_signal_frequency(&self, load: &Load, stage: &Stage) -> f64 {
+        let fixed = |value: f64| Dual::constant(value);
+        let position = Dual::new(stage.position, 1.0);
+        let stretch = self.stretch(position);
+        let voltage = self.membrane_voltage(load, stage);
+        let held = match self.device.port.source {
+            Source::Voltage => fixed(voltage),
+            Source::Current | Source::Charge => {
+                let charge = voltage * self.capacitance(self.stretch(stage.position));
+                fixed(charge) / self.capacitance(stretch)
+            }
+        };
+        let still = Stage {
+            position,
+            rate: fixed(0.0),
+            internal: stage.internal.map(fixed),
+        };
+        let [force, inertia, _] = self.forces_at(fixed(load.prestress), held, &still);
+        (-force.slope() / inertia.term[0]).max(0.0).sqrt()
     }
 
     /// z' of the charge, where it is a state, and of the branches.
