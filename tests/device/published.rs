@@ -78,8 +78,8 @@ fn ideal_pull_in() {
 fn held_charge_is_stable_everywhere() {
     let mut device = sheet(4e4);
     device.port.source = Source::Charge;
-    for charge in [0.3, 1.002_244_772_747_494, 3.0, 30.0] {
-        let exact = (1.0 + charge * charge as f64).powf(1.0 / 6.0);
+    for charge in [0.3_f64, 1.002_244_772_747_494, 3.0, 30.0] {
+        let exact = (1.0 + charge * charge).powf(1.0 / 6.0);
         close(equilibrium(device, charge, 0.0), exact, 1e-11);
     }
 }
