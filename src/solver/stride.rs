@@ -13,9 +13,6 @@ use super::double::Double;
 use super::step_control::{StepControl, Verdict};
 use super::{Equation, LocalEquation, State};
 
-/// Node pairs of a stride at a loose tolerance.
-pub const PAIRS: usize = 4;
-
 /// Node pairs of a stride at a tight one.
 const MOST_PAIRS: usize = super::segment::PAIRS;
 
@@ -31,9 +28,6 @@ const FEW: f64 = 4.0;
 
 /// By how much the contraction may be larger than in the stride before.
 const GROWTH: f64 = 1.2;
-
-/// Strides that may be needed for the way of one.
-const MOST_SHORT: u32 = 100;
 
 /// A contraction below this is rounding.
 const LEAST: f64 = 1e-3;

@@ -30,7 +30,7 @@ pub type Row = [f64; LANES];
 
 /// The largest correction of a position in a step, over the tolerance and the position. What is
 /// corrected is the method's error by one order less: the error that stays is far smaller.
-const CORRECTION: f64 = 0.1;
+const CORRECTION: f64 = 0.01;
 
 /// The correction falls with the step like its power of this order.
 const FALL: f64 = (ORDER + 2) as f64;
@@ -255,10 +255,9 @@ impl<E: Equation> Course<'_, E> {
         let looked_back = (ORDER - 1) as f64;
         let blocks = ((rest / free - looked_back) / BLOCK as f64).ceil();
         lane.starts += 1;
-        let suits = blocks >= 1.0
-            && blocks < 1e15
+        let suits = (1.0..1e15).contains(&blocks)
             && lane.starts <= MOST_STARTS
-            && !(free < SHORTEST * lane.first);
+            && free >= SHORTEST * lane.first;
         if !suits {
             return self.go_alone(lane, state);
         }
@@ -307,7 +306,9 @@ impl<E: Equation> Course<'_, E> {
         let allowed = CORRECTION * self.tolerance * state.position.abs();
         let ratio = packed.correction[index] / allowed;
         let stable = STABLE / packed.stiffness[index].sqrt();
-        if !(ratio <= 1.0) || !(step <= 1.1 * stable) {
+        // NaN is in neither range.
+        let fits = (0.0..=1.0).contains(&ratio) && (0.0..=1.1 * stable).contains(&step);
+        if !fits {
             let by_error = if ratio.is_finite() {
                 (0.8 * ratio.max(1.0).powf(-1.0 / FALL)).clamp(0.3, 0.8)
             } else {
@@ -317,7 +318,7 @@ impl<E: Equation> Course<'_, E> {
             return self.start(lane, ensemble, packed, index, state, shorter);
         }
         let (low, high) = (packed.lowest[index], packed.highest[index]);
-        if !(limits.lower < low && high < limits.upper) {
+        if low <= limits.lower || high >= limits.upper {
             return self.go_alone(lane, state);
         }
         let Extremes { lowest, highest } = lane.extremes;
