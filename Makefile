@@ -9,10 +9,11 @@ PYTHON_IN_VENV := $(BIN)/python
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
-EXAMPLES = control/control system/positioning lag/lag sweep/pull_in_map sweep/frequency_response sweep/rates
+EXAMPLES = control/control system/positioning lag/lag identification/identify sweep/pull_in_map sweep/frequency_response sweep/rates
 HOSTS_INSTALLED := $(VENV)/installed-hosts
 PACKAGE_INSTALLED := $(VENV)/installed-package
 TESTS_INSTALLED := $(VENV)/installed-tests
+RELEASE_INSTALLED := $(VENV)/installed-release
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -82,7 +83,8 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel guide paper examples test $(CHECKS) lint-all audit bless test-platforms stress soak \
+.PHONY: help run fmu fmu-all native wheel release guide paper examples test $(CHECKS) lint-all audit bless \
+test-platforms stress soak \
 fuzz bench env clean
 
 help:
@@ -103,6 +105,7 @@ help:
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
 	@echo 'make native          build the native library of the Python package for 64-bit Linux'
 	@echo 'make wheel           build the Python package for every platform into target/wheel'
+	@echo 'make release         gather a release in target/releases (docs/releasing.md)'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
 	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
 	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
@@ -132,6 +135,11 @@ wheel: fmu-all $(PACKAGE_INSTALLED)
 	$(call heading,Wheel)
 	@$(call build_wheel)
 
+# The live page goes in where it has been built.
+release: wheel $(RELEASE_INSTALLED)
+	$(call heading,Release)
+	@$(PYTHON_IN_VENV) packaging/release.py
+
 guide: $(INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu guide
@@ -140,7 +148,7 @@ paper: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Paper)
 	@PYTHONPATH=studies $(PYTHON_IN_VENV) -m paper $(if $(WORKERS),--workers $(WORKERS)) $(PAPER)
 
-examples: fmu $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
+examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	@rm -rf target/examples
 	@for example in $(EXAMPLES); do \
 	printf '\n==> examples/%s.py\n' $$example; \
@@ -198,7 +206,7 @@ documentation-tests: $(TESTS_INSTALLED)
 	$(call heading,Rust tests in the documentation)
 	@$(PYTEST) tests/documentation $(JUNIT)
 
-fmpy-tests: fmu $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
+fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,FMPy tests)
 	@$(PYTEST) tests/fmpy $(JUNIT)
 
@@ -303,6 +311,11 @@ $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the examples)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement examples/requirements.txt
+	@touch $@
+
+$(RELEASE_INSTALLED): packaging/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of a release)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement packaging/requirements.txt
 	@touch $@
 
 $(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)

@@ -14,9 +14,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 
 import figure_style as style
-from dielectric_actuator import packed_fmu
-from scenes import Measure
-from sweep import PATIENCE, AnotherSweep, Unfinished, grid, sweep
+from dielectric_actuator import grid, packed_fmu
+from dielectric_actuator.measures import Measure
+from dielectric_actuator.sweep import PATIENCE, AnotherSweep, Unfinished, sweep
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "sweep"
 

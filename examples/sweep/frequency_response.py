@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
 from command import column, parse, run
-from scenes import frequency_response
+from dielectric_actuator.measures import frequency_response
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIME = 2000.0

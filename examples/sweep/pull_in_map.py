@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
 from command import column, parse, run
-from scenes import pull_in
+from dielectric_actuator.measures import pull_in
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.0}
 STOP_TIME = 500.0

@@ -27,9 +27,9 @@ from command import column, parse
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
-from dielectric_actuator import Actuator
-from scenes import frequency_response
-from sweep import grid, local_cluster, sweep
+from dielectric_actuator import Actuator, grid
+from dielectric_actuator.measures import frequency_response
+from dielectric_actuator.sweep import local_cluster, sweep
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 STOP_TIMES = (2000.0, 50000.0)

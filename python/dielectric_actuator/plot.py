@@ -73,7 +73,9 @@ def overview(response: np.ndarray, title: str = "") -> Any:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(9.5, 4.6), layout="constrained", dpi=150)
-    panels = figure.subplot_mosaic([["history", "portrait"], ["margin", "portrait"]], height_ratios=(2, 1))
+    panels: dict[str, Any] = figure.subplot_mosaic(
+        [["history", "portrait"], ["margin", "portrait"]], height_ratios=(2, 1)
+    )
     above, below = panels["history"], panels["margin"]
     history(above, response)
     above.set_xlabel("")

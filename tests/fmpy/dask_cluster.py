@@ -1,4 +1,4 @@
-"""A Dask cluster of processes that know nothing of this checkout."""
+"""A Dask cluster of processes that know the package and nothing else of this checkout."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The sweep example, on a Dask cluster whose processes know nothing of this checkout, and on its own workers."""
+"""The sweep, on a Dask cluster whose processes know the package and nothing else, and on its own workers."""
 
 import os
 import re
@@ -15,8 +15,8 @@ import pytest
 import command
 import dask_cluster
 import references
-import scenes
-import sweep as engine
+from dielectric_actuator import grid, measures
+from dielectric_actuator import sweep as engine
 from sweep_measures import fatal, whose
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -35,7 +35,7 @@ def cluster(tmp_path_factory):
 def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
     for k, reference in enumerate(references.driven_amplitudes()):
         table = engine.sweep(
-            partial(scenes.frequency_response, stop_time=reference.stop_time),
+            partial(measures.frequency_response, stop_time=reference.stop_time),
             {name: [value] for name, value in reference.scene().items()},
             tmp_path / f"{k}.parquet",
             cluster=cluster,
@@ -48,7 +48,7 @@ def test_amplitudes_are_those_of_the_reference(cluster, fmu_path, tmp_path):
 def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
     table = engine.sweep(
         whose,
-        engine.grid(phi=np.linspace(0, 0.6, 200)),
+        grid(phi=np.linspace(0, 0.6, 200)),
         tmp_path / "whose.parquet",
         cluster=cluster,
         batch=5,
@@ -61,8 +61,8 @@ def test_each_worker_keeps_one_actuator(cluster, fmu_path, tmp_path):
 def test_a_failing_scene_is_reported_and_the_rest_kept(cluster, fmu_path, tmp_path, capsys):
     voltages = [0.1, 5000.0, 0.2, 0.9, float("nan")]
     table = engine.sweep(
-        partial(scenes.pull_in, stop_time=200.0),
-        engine.grid(phi=voltages),
+        partial(measures.pull_in, stop_time=200.0),
+        grid(phi=voltages),
         tmp_path / "some.parquet",
         cluster=cluster,
         batch=3,
@@ -78,8 +78,8 @@ def test_a_failing_scene_is_reported_and_the_rest_kept(cluster, fmu_path, tmp_pa
 
 def test_a_stopped_sweep_goes_on_from_what_is_done(cluster, fmu_path, tmp_path, capsys, monkeypatch):
     output = tmp_path / "stopped.parquet"
-    columns = engine.grid(phi=np.linspace(0.1, 0.6, 60), S=[0.1])
-    measure = partial(scenes.pull_in, stop_time=50.0)
+    columns = grid(phi=np.linspace(0.1, 0.6, 60), S=[0.1])
+    measure = partial(measures.pull_in, stop_time=50.0)
     write, written = engine._Results.add, []
 
     def stop_after_three(results, numbers, rows, found):
@@ -110,16 +110,16 @@ def test_a_stopped_sweep_goes_on_from_what_is_done(cluster, fmu_path, tmp_path, 
 
 def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
     output = tmp_path / "first.parquet"
-    short, long = (partial(scenes.pull_in, stop_time=time) for time in (10.0, 20.0))
-    engine.sweep(short, engine.grid(phi=[0.1, 0.2]), output, cluster=cluster, fmu=fmu_path)
+    short, long = (partial(measures.pull_in, stop_time=time) for time in (10.0, 20.0))
+    engine.sweep(short, grid(phi=[0.1, 0.2]), output, cluster=cluster, fmu=fmu_path)
     for measure, axes in ((long, {"phi": [0.1, 0.2]}), (short, {"phi": [0.1, 0.3]})):
         with pytest.raises(engine.AnotherSweep, match="remove it or write elsewhere"):
-            engine.sweep(measure, engine.grid(**axes), output, cluster=cluster, fmu=fmu_path)
+            engine.sweep(measure, grid(**axes), output, cluster=cluster, fmu=fmu_path)
 
 
 def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):
     """A batch that was on a dying worker too often counts as lost with it; all others must be there."""
-    output, columns = tmp_path / "lost.parquet", engine.grid(phi=np.arange(0.1, 0.85, 0.1).round(1))
+    output, columns = tmp_path / "lost.parquet", grid(phi=np.arange(0.1, 0.85, 0.1).round(1))
     once = dask.config.set({"distributed.scheduler.allowed-failures": 1})
     with once, pytest.raises(engine.Unfinished) as unfinished:
         engine.sweep(fatal, columns, output, workers=1, batch=2, fmu=fmu_path)

@@ -14,7 +14,8 @@ import pyarrow.parquet as parquet
 import pytest
 
 import dask_cluster
-import sweep as engine
+from dielectric_actuator import grid
+from dielectric_actuator import sweep as engine
 from sweep_measures import slow
 
 PATIENCE = 8.0
@@ -34,7 +35,7 @@ SCENES = 60
 def test_a_loss_ends_the_sweep_in_time_with_what_is_done_kept(fmu_path, tmp_path, capsys, lost, how, reason):
     output = tmp_path / "lost.parquet"
     parts = tmp_path / "lost.parquet.parts"
-    columns = engine.grid(phi=np.linspace(0.1, 0.6, SCENES))
+    columns = grid(phi=np.linspace(0.1, 0.6, SCENES))
     moment = []
 
     def lose(processes):
@@ -61,7 +62,7 @@ def test_a_loss_ends_the_sweep_in_time_with_what_is_done_kept(fmu_path, tmp_path
 
 def test_a_cluster_without_workers_or_scheduler_is_reported(fmu_path, tmp_path):
     def run(address):
-        columns, output = engine.grid(phi=[0.1]), tmp_path / "none.parquet"
+        columns, output = grid(phi=[0.1]), tmp_path / "none.parquet"
         engine.sweep(slow, columns, output, cluster=address, fmu=fmu_path, patience=3.0)
 
     nobody = pytest.raises(engine.Unfinished, match="none of 0 workers")

@@ -1,6 +1,5 @@
 """The worker's side of a sweep: one loaded actuator, reset between scenes.
 
-This file is sent to each worker; it must import nothing of the project but the installed package.
 A measure is a function ``(actuator, scene) -> results`` that runs one scene, given as start values by
 variable name, and returns its results by column name.
 """
@@ -12,24 +11,25 @@ import math
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 from distributed import WorkerPlugin, get_worker
 
-from dielectric_actuator import Actuator
+from .actuator import Actuator
 
 Measure = Callable[[Actuator, Mapping[str, float]], Mapping[str, float]]
 
 _loaded = threading.local()
 
 
-class CarryFmu(WorkerPlugin):
+class CarryFmu(WorkerPlugin):  # type: ignore[misc]
     """Puts the packed FMU into the folder of each worker, of one that joins late too."""
 
     def __init__(self, name: str, packed: bytes):
         self.name = name
         self._packed = packed
 
-    def setup(self, worker) -> None:
+    def setup(self, worker: Any) -> None:
         # a folder for each content, so that a cluster that stays up may see the FMU change
         path = Path(worker.local_directory) / hashlib.sha256(self._packed).hexdigest()[:16] / self.name
         path.parent.mkdir(exist_ok=True)
@@ -41,7 +41,8 @@ def loaded_actuator(path: Path) -> Actuator:
     """The actuator of this thread, loaded at its first scene and kept."""
     if getattr(_loaded, "path", None) != path:
         _loaded.actuator, _loaded.path = Actuator(path), path
-    return _loaded.actuator
+    actuator: Actuator = _loaded.actuator
+    return actuator
 
 
 def run_batch(measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
@@ -51,7 +52,7 @@ def run_batch(measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str
 
 def run_scenes(actuator: Actuator, measure: Measure, scenes: list[dict[str, float]]) -> list[dict[str, object]]:
     """Results of each scene in order; of one that fails, its reason under ``failure``."""
-    results = []
+    results: list[dict[str, object]] = []
     for scene in scenes:
         try:
             results.append({**measure(actuator, scene), "failure": None})

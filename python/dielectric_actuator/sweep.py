@@ -1,15 +1,16 @@
 """Tens of thousands of scenes on the processes of one machine, or unchanged on a Dask cluster.
 
-    from sweep import grid, sweep
-    from scenes import pull_in
+    from dielectric_actuator import grid
+    from dielectric_actuator.measures import pull_in
+    from dielectric_actuator.sweep import sweep
 
     table = sweep(partial(pull_in, stop_time=500.0), grid(phi=voltages, S=prestresses), Path("map.parquet"))
 
 The scenes travel in batches. A batch that comes back is written at once, next to the result, as a small
 Parquet file; a sweep that was stopped goes on from these. The result holds one row a scene: its number,
-its parameters, its results, and the reason if it failed. The FMU and the modules that a worker needs
-(the one that defines the measure too) are sent to it, so that a worker on another machine needs only the
-package `dielectric_actuator` with its extra `sweep`.
+its parameters, its results, and the reason if it failed. The FMU and the module that defines the measure are sent
+to each worker; a machine of the cluster needs this package with its extra ``sweep``, in the same version. What
+an `ensemble` can follow, constant inputs and the built-in drive, takes a fraction of the time there.
 
 Nothing waits for ever: where the scheduler or every worker is lost, or the network to them, the sweep ends
 after `patience` seconds without a sign of life, with what is done kept.
@@ -19,15 +20,16 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-import itertools
 import queue
 import time
 import uuid
 from asyncio import CancelledError
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
@@ -35,9 +37,13 @@ import pyarrow.parquet as parquet
 from distributed import Client, Future, LocalCluster
 from distributed.deploy import Cluster
 from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
+from numpy.typing import ArrayLike
 
-import scenes as worker_side
-from dielectric_actuator import packed_fmu
+from . import measures
+from .fmu import packed_fmu
+from .measures import Measure
+
+Row = dict[str, Any]
 
 FINGERPRINT = b"sweep"
 BATCH = 100
@@ -56,15 +62,9 @@ class Unfinished(RuntimeError):
     """Some batches were lost, or the whole cluster; what is done is kept, and the same call goes on from there."""
 
 
-def grid(**axes: Sequence[float]) -> dict[str, np.ndarray]:
-    """Every combination of the given values as columns, the last name varying fastest."""
-    columns = zip(*itertools.product(*axes.values()))
-    return {name: np.asarray(column, dtype=float) for name, column in zip(axes, columns)}
-
-
 def sweep(
-    measure: worker_side.Measure,
-    scenes: Mapping[str, Sequence[float]],
+    measure: Measure,
+    scenes: Mapping[str, ArrayLike],
     output: Path,
     *,
     cluster: str | Cluster | None = None,
@@ -80,10 +80,10 @@ def sweep(
     one a processor core). Raises `AnotherSweep` if `output` holds the results of one, `Unfinished` if
     batches were lost or the cluster gave no sign of life for `patience` seconds.
     """
-    scenes = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
+    columns = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
     fmu = fmu or packed_fmu()
-    results = _Results(output, _fingerprint(measure, scenes, fmu))
-    count = len(next(iter(scenes.values())))
+    results = _Results(output, _fingerprint(measure, columns, fmu))
+    count = len(next(iter(columns.values())))
     pending = np.setdiff1d(np.arange(count), results.finished())
     progress = Progress(count, count - len(pending))
     lost: list[str] = []
@@ -95,8 +95,8 @@ def sweep(
             batches = {}
             for start in range(0, len(pending), batch):
                 numbers = pending[start : start + batch]
-                rows = [{name: float(column[k]) for name, column in scenes.items()} for k in numbers]
-                batches[client.submit(worker_side.run_batch, measure, rows, pure=False)] = (numbers, rows)
+                rows = [{name: float(column[k]) for name, column in columns.items()} for k in numbers]
+                batches[client.submit(measures.run_batch, measure, rows, pure=False)] = (numbers, rows)
             for future in heartbeats.as_completed(list(batches)):
                 numbers, rows = batches.pop(future)
                 try:
@@ -121,7 +121,7 @@ class Heartbeats:
         self._heard: dict[str, float] = {}
         self._last = time.monotonic()
 
-    def bounded(self, coroutine, *arguments):
+    def bounded(self, coroutine: Callable[..., Any], *arguments: object) -> Any:
         """What `coroutine` returns; Unfinished if the cluster does not answer in time."""
         try:
             return self._client.sync(coroutine, *arguments, callback_timeout=self._patience)
@@ -229,7 +229,7 @@ class _Results:
             [np.empty(0, int), *(parquet.read_table(path, columns=["scene"])["scene"].to_numpy() for path in files)]
         )
 
-    def add(self, numbers: np.ndarray, rows: list[dict], found: list[dict]) -> None:
+    def add(self, numbers: np.ndarray, rows: list[Row], found: list[Row]) -> None:
         """Write one batch; whole or not at all, should the sweep be stopped meanwhile."""
         self._folder.mkdir(parents=True, exist_ok=True)
         table = pa.Table.from_pylist(
@@ -260,7 +260,7 @@ class _Results:
         unfinished.replace(path)
 
 
-def _schema(rows: list[dict], found: list[dict]) -> pa.Schema:
+def _schema(rows: list[Row], found: list[Row]) -> pa.Schema:
     """Columns of a batch: number, parameters, results (Boolean or double), reason of a failure."""
     results = next((row for row in found if row["failure"] is None), {})
     return pa.schema(
@@ -275,7 +275,7 @@ def _schema(rows: list[dict], found: list[dict]) -> pa.Schema:
     )
 
 
-def _fingerprint(measure: worker_side.Measure, scenes: Mapping[str, np.ndarray], fmu: Path) -> bytes:
+def _fingerprint(measure: Measure, scenes: Mapping[str, np.ndarray], fmu: Path) -> bytes:
     """Tells sweeps apart: the FMU, the code and settings of the measure, the scenes."""
     function, settings = _unwrapped(measure)
     digest = hashlib.sha256(fmu.read_bytes())
@@ -285,13 +285,13 @@ def _fingerprint(measure: worker_side.Measure, scenes: Mapping[str, np.ndarray],
     return digest.hexdigest().encode()
 
 
-def _unwrapped(measure: worker_side.Measure) -> tuple[worker_side.Measure, dict]:
+def _unwrapped(measure: Measure) -> tuple[Any, dict[str, Any]]:
     """The function of a measure, and the settings that `functools.partial` gave it."""
     return (measure.func, measure.keywords) if isinstance(measure, partial) else (measure, {})
 
 
 @contextmanager
-def _client(cluster: str | Cluster | None, workers: int | None, patience: float):
+def _client(cluster: str | Cluster | None, workers: int | None, patience: float) -> Iterator[Client]:
     if cluster is None:
         with local_cluster(workers) as own, _client(own, None, patience) as client:
             yield client
@@ -312,15 +312,20 @@ def local_cluster(workers: int | None) -> LocalCluster:
     return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
 
 
-async def _equip(client: Client, measure: worker_side.Measure, fmu: Path) -> None:
-    """Give each worker, of now and later, the modules and the FMU."""
-    own = inspect.getmodule(_unwrapped(measure)[0])
-    for module in dict.fromkeys((worker_side, own)):
-        if module.__name__ != "__main__":  # Dask sends a function of the script itself as code
-            # a name of its own each time, as Client.upload_file does: what was sent last counts
-            name = f"{module.__name__}-{uuid.uuid4()}"
-            # a scheduler in this process has the modules already, and must not load them a second time
-            in_this_process = client.cluster is not None
-            await client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
-            await client.register_plugin(UploadFile(module.__file__), name=name)
-    await client.register_plugin(worker_side.CarryFmu(fmu.name, fmu.read_bytes()))
+def _must_be_sent(module: ModuleType) -> bool:
+    """Whether a worker does not have it: not one of this package, nor the script, of which Dask sends functions as
+    code."""
+    return module.__name__ != "__main__" and module.__name__.partition(".")[0] != __package__
+
+
+async def _equip(client: Client, measure: Measure, fmu: Path) -> None:
+    """Give each worker, of now and later, the module of the measure and the FMU."""
+    module = inspect.getmodule(_unwrapped(measure)[0])
+    if module is not None and _must_be_sent(module):
+        # a name of its own each time, as Client.upload_file does: what was sent last counts
+        name = f"{module.__name__}-{uuid.uuid4()}"
+        # a scheduler in this process has the module already, and must not load it a second time
+        in_this_process = client.cluster is not None
+        await client.register_plugin(SchedulerUploadFile(module.__file__, load=not in_this_process), name=name)
+        await client.register_plugin(UploadFile(module.__file__), name=name)
+    await client.register_plugin(measures.CarryFmu(fmu.name, fmu.read_bytes()))

@@ -1,0 +1,194 @@
+"""Gathers what a release consists of in a folder named by the version: FMUs, wheel, page, bill of materials, sums.
+
+    python packaging/release.py [--output FOLDER]
+
+Everything must have been built: `make release` does so first. The bytes depend on what was built alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tomllib
+import uuid
+from collections.abc import Iterator
+from pathlib import Path
+
+from cyclonedx.factory.license import LicenseFactory
+from cyclonedx.model import HashAlgorithm, HashType
+from cyclonedx.model.bom import Bom, BomMetaData
+from cyclonedx.model.component import Component, ComponentScope, ComponentType
+from cyclonedx.output import make_outputter
+from cyclonedx.schema import OutputFormat, SchemaVersion
+from packageurl import PackageURL
+
+PROJECT = Path(__file__).resolve().parents[1]
+TARGET = PROJECT / "target"
+SHIPPED = ("python/native", "fmus/")
+"""Folders of the workspace's members whose libraries are shipped."""
+BILL = "bill_of_materials.cdx.json"
+SUMS = "SHA256SUMS"
+
+
+def main() -> int:
+    """Fill the folder; 0 on success, 1 if something was not built."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--output", type=Path, default=TARGET / "releases", help="folder of releases (%(default)s)")
+    output = parser.parse_args().output
+    metadata = cargo_metadata()
+    version = workspace_version()
+    page = TARGET / "page" / "index.html"
+    wheel = TARGET / "wheel" / f"dielectric_actuator-{version}-py3-none-any.whl"
+    built = [*sorted((TARGET / "fmu").glob("*.fmu")), wheel]
+    missing = [str(path) for path in built if not path.is_file()]
+    if missing or len(built) < 2:
+        print(f"error: not built: {', '.join(missing) or 'FMU'}; run make release", file=sys.stderr)
+        return 1
+    folder = output / version
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for path in built:
+        shutil.copyfile(path, folder / path.name)
+    if page.is_file():
+        shutil.copyfile(page, folder / "dielectric_elastomer_actuator.html")
+    else:
+        print("without the live page: there is no target/page/index.html")
+    (folder / BILL).write_text(bill_of_materials(metadata, version), encoding="utf-8")
+    (folder / SUMS).write_text(sums(folder), encoding="ascii")
+    for path in sorted(folder.iterdir()):
+        print(f"{path.stat().st_size:>9} bytes  {path}")
+    return 0
+
+
+def cargo_metadata() -> dict:
+    """What cargo knows of the workspace and all that it depends on."""
+    words = [os.environ.get("CARGO", "cargo"), "metadata", "--format-version", "1", "--locked"]
+    return json.loads(subprocess.run(words, cwd=PROJECT, stdout=subprocess.PIPE, check=True).stdout)
+
+
+def workspace_version() -> str:
+    """The version of the release, that of the workspace."""
+    manifest = tomllib.loads((PROJECT / "Cargo.toml").read_text(encoding="utf-8"))
+    return manifest["workspace"]["package"]["version"]
+
+
+def linked_crates(metadata: dict) -> Iterator[dict]:
+    """The crates of others that are linked into what is shipped, for any platform: normal dependencies, no
+    compile-time ones."""
+    packages = {package["id"]: package for package in metadata["packages"]}
+    nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
+    root = Path(metadata["workspace_root"])
+    ahead = [
+        member
+        for member in metadata["workspace_members"]
+        if str(Path(packages[member]["manifest_path"]).relative_to(root)).startswith(SHIPPED)
+    ]
+    seen = set()
+    while ahead:
+        identity = ahead.pop()
+        compile_time = any("proc-macro" in target["kind"] for target in packages[identity]["targets"])
+        if identity in seen or compile_time:
+            continue
+        seen.add(identity)
+        for dependency in nodes[identity]["deps"]:
+            if any(kind["kind"] is None for kind in dependency["dep_kinds"]):
+                ahead.append(dependency["pkg"])
+    found = (packages[identity] for identity in seen)
+    yield from sorted((package for package in found if package["source"]), key=lambda p: (p["name"], p["version"]))
+
+
+def bill_of_materials(metadata: dict, version: str) -> str:
+    """CycloneDX 1.6 as JSON: what is linked in, with versions, licences and the checksums of Cargo.lock, and what the
+    wheel asks for."""
+    licences = LicenseFactory()
+    lock = tomllib.loads((PROJECT / "Cargo.lock").read_text(encoding="utf-8"))["package"]
+    checksums = {(package["name"], package["version"]): package.get("checksum") for package in lock}
+    components = [
+        Component(
+            name=crate["name"],
+            version=crate["version"],
+            bom_ref=f"cargo:{crate['name']}@{crate['version']}",
+            scope=ComponentScope.REQUIRED,
+            licenses=[licences.make_from_string(crate["license"].replace("/", " OR "))] if crate["license"] else None,
+            purl=PackageURL("cargo", None, crate["name"], crate["version"]),
+            hashes=[HashType(alg=HashAlgorithm.SHA_256, content=checksums[crate["name"], crate["version"]])],
+        )
+        for crate in linked_crates(metadata)
+    ]
+    rust = tomllib.loads((PROJECT / "rust-toolchain.toml").read_text(encoding="utf-8"))["toolchain"]["channel"]
+    components.append(
+        Component(
+            name="rust-std",
+            version=rust,
+            bom_ref=f"rust-std@{rust}",
+            scope=ComponentScope.REQUIRED,
+            licenses=[licences.make_from_string("MIT OR Apache-2.0")],
+            description="Rust's standard library, linked in",
+        )
+    )
+    pins = {}
+    for line in (PROJECT / "requirements.txt").read_text(encoding="utf-8").splitlines():
+        name, equals, pinned = line.partition("==")
+        if equals:
+            pins[name] = pinned.split(";")[0].strip()
+    components.append(
+        Component(
+            name="llvm-libunwind",
+            version=pins["ziglang"],
+            bom_ref="llvm-libunwind",
+            scope=ComponentScope.REQUIRED,
+            licenses=[licences.make_from_string("Apache-2.0 WITH LLVM-exception")],
+            description="the unwinder that zig of this version brings, linked in",
+        )
+    )
+    project = tomllib.loads((PROJECT / "python" / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    asked = [(text, ComponentScope.REQUIRED) for text in project["dependencies"]]
+    asked += [(text, ComponentScope.OPTIONAL) for name, texts in extras.items() if name != "all" for text in texts]
+    for text, scope in asked:
+        name = text.split(">")[0]
+        components.append(
+            Component(
+                name=name,
+                bom_ref=f"pypi:{name}",
+                scope=scope,
+                purl=PackageURL("pypi", None, name.lower()),
+                description=f"asked for by the wheel, not part of it: {text}",
+            )
+        )
+    shipped = Component(
+        name="dielectric-elastomer-actuator",
+        version=version,
+        type=ComponentType.APPLICATION,
+        bom_ref=f"dielectric-elastomer-actuator@{version}",
+        licenses=[licences.make_from_string("MIT OR Apache-2.0")],
+    )
+    contents = "\n".join(f"{component.bom_ref}" for component in components)
+    bom = Bom(
+        components=components,
+        metadata=BomMetaData(component=shipped),
+        # the same contents, the same number
+        serial_number=uuid.uuid5(uuid.NAMESPACE_URL, f"{shipped.bom_ref}\n{contents}"),
+    )
+    bom.register_dependency(shipped, components)
+    text = make_outputter(bom, OutputFormat.JSON, SchemaVersion.V1_6).output_as_string(indent=2)
+    bill = json.loads(text)
+    # the library writes the present time, which is not of the contents
+    bill["metadata"].pop("timestamp", None)
+    return json.dumps(bill, indent=2, sort_keys=True) + "\n"
+
+
+def sums(folder: Path) -> str:
+    """SHA-256 of each file, as ``sha256sum --check`` reads them."""
+    return "".join(
+        f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in sorted(folder.iterdir())
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())
