@@ -38,7 +38,7 @@ endif
 
 # What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
 CHECKS = format lint python-lint licences documentation \
-package-types rust-tests documentation-tests fmpy-tests package-tests host-tests instruction-counts
+package-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests instruction-counts
 REPORTS := target/reports
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
@@ -228,6 +228,10 @@ instruction-counts: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
 bless: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,New bounds of the instructions of the hot calls)
 	@$(PYTEST) tests/performance -q --bless -rP | grep before
+
+release-tests: $(TESTS_INSTALLED) $(RELEASE_INSTALLED)
+	$(call heading,Release)
+	@$(PYTEST) tests/release $(JUNIT)
 
 host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Other hosts and memory checkers)
