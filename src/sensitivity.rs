@@ -18,6 +18,9 @@ use crate::solver::segment::Segment;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, LocalEquation, State};
 
+/// Substeps that one experiment may take: some seconds of work.
+const MOST_SUBSTEPS: u32 = 200_000;
+
 /// What the motion is differentiated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
@@ -116,6 +119,7 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
         tolerance,
     } = *experiment;
     let mut samples = Vec::with_capacity(times.len());
+    let mut budget = MOST_SUBSTEPS;
     let mut trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, tolerance);
     let mut beside = Known::ALL.map(start_of);
     let Some(&last) = times.last() else {
@@ -138,6 +142,13 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
             if rest <= 0.0 {
                 break;
             }
+            if budget == 0 {
+                return Err(Interruption::Failure(Failure::TooManySubsteps {
+                    most: MOST_SUBSTEPS,
+                    after: passed,
+                }));
+            }
+            budget -= 1;
             let begin = *trajectory.time();
             let (segment, progress) = trajectory
                 .advance_by_substep(&scene, rest)

@@ -23,6 +23,8 @@ THRESHOLDS = {
     "phi_pull_in_static": "static pull-in voltage, raised slowly",
     "lambda3_pull_in_static": "thickness stretch there",
 }
+EXTRAS = {"matplotlib": "plot", "scipy": "fit"}
+"""The extra of the package that brings a module."""
 VARIABLES = "Variables of the FMU are options too, by their names: --phi 0.6 --gamma_s 0.05."
 
 
@@ -31,7 +33,12 @@ def main(words: Sequence[str] | None = None) -> int:
     arguments, rest = _parser().parse_known_args(words)
     try:
         arguments.run(arguments, _variables(rest))
-    except (FMICallException, UnknownName, ValueError, OSError, RuntimeError, ImportError) as reason:
+    except ImportError as missing:
+        extra = EXTRAS.get(str(missing.name).partition(".")[0])
+        advice = f"; it comes with pip install 'dielectric-actuator[{extra}]'" if extra else ""
+        print(f"error: {missing}{advice}", file=sys.stderr)
+        return 1
+    except (FMICallException, UnknownName, ValueError, OSError, RuntimeError) as reason:
         notes = getattr(reason, "__notes__", [])
         print(f"error: {'; '.join([*notes, *([] if notes else [str(reason)])])}", file=sys.stderr)
         return 2 if isinstance(reason, (UnknownName, ValueError)) else 1

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .fmu import UnknownName, packed_fmu
+from .measured import check
 
 Floats = NDArray[np.float64]
 
@@ -185,7 +186,9 @@ def sensitivities(
     array with a row for each of them and a column for each of `known_names`: the variational equations along the
     trajectory, solved with the substeps of the motion.
 
-    Raises `Collapse` where the actuator is pulled in on the way.
+    Raises `Collapse` where the actuator is pulled in on the way, ValueError with the row where the times do not
+    increase, those of `at` go back or lie before the first, or a value is no number or out of range, and RuntimeError
+    where the way is too long to be followed.
     """
     names = known_names()
     for name in values:
@@ -194,10 +197,13 @@ def sensitivities(
     knowns = np.array([
         _column(name, np.array([float(values.get(name, limits()[name][0]))]))[0] for name in names
     ])  # fmt: skip
-    time, voltage = np.asarray(time, dtype=float), np.asarray(voltage, dtype=float)
+    time, columns = check(time, {"voltage": voltage})
     sampled = np.ascontiguousarray(time if at is None else np.asarray(at, dtype=float))
+    back = np.flatnonzero(~(np.diff(sampled, prepend=time[0]) >= 0))
+    if back.size:
+        raise ValueError(f"at in row {back[0] + 1} is {sampled[back[0]]:g}; it must not go back, nor start before time")
     bounds = np.array([limits()["lambda_min"][0], limits()["lambda_max"][0]])
-    ramps = _ramps(time, voltage, interpolation)
+    ramps = _ramps(time, columns["voltage"], interpolation)
     samples = np.empty((len(sampled), 1 + len(names)))
     when = np.zeros(1)
     ending = _library().dea_sensitivities(

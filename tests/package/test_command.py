@@ -1,6 +1,7 @@
 """The command ``dielectric-actuator``, in this process."""
 
 import csv
+import sys
 
 import numpy as np
 import pytest
@@ -62,6 +63,12 @@ def test_thresholds_are_printed(capsys):
 def test_an_error_is_one_line(capsys, words, message):
     code, _, err = run(capsys, *words)
     assert code in (1, 2) and message in err and err.startswith("error: ") and err.count("\n") == 1
+
+
+def test_a_missing_extra_is_named(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    code, _, err = run(capsys, "run", "--plot", "out.png")
+    assert code == 1 and "pip install 'dielectric-actuator[plot]'" in err
 
 
 def test_a_sweep_is_a_table_of_all_combinations(capsys, tmp_path):

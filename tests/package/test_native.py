@@ -141,3 +141,20 @@ def test_a_collapse_is_told_with_its_time():
     with pytest.raises(Collapse, match="pulled in at time") as collapse:
         sensitivities({}, [0.0, 80.0], [0.7, 0.7])
     assert collapse.value.time == pytest.approx(38.6058, abs=1e-3)
+
+
+@pytest.mark.parametrize("time, at, message", [
+    ([0.0, 2.0, 1.0], None, "time in row 3 is 1 after 2"),
+    ([0.0, 1.0, math.nan], None, "time in row 3 is nan"),
+    ([0.0, 1.0, 2.0], [0.5, 0.4], "at in row 2 is 0.4; it must not go back"),
+    ([0.0, 1.0, 2.0], [-0.5], "at in row 1 is -0.5"),
+    ([0.0, 1.0, 2.0], [math.nan], "at in row 1 is nan"),
+])  # fmt: skip
+def test_bad_times_are_named_by_their_row(time, at, message):
+    with pytest.raises(ValueError, match=message):
+        sensitivities({}, time, [0.1, 0.1, 0.1], at=at)
+
+
+def test_a_way_that_is_too_long_is_given_up():
+    with pytest.raises(RuntimeError, match="the integration could not go on"):
+        sensitivities({}, [0.0, 1e12], [0.3, 0.3])
