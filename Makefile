@@ -83,7 +83,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel release guide paper examples test $(CHECKS) lint-all audit bless \
+.PHONY: help run fmu fmu-all native wheel pack-wheel release guide paper examples test $(CHECKS) lint-all audit bless \
 test-platforms stress soak \
 fuzz bench env clean
 
@@ -132,6 +132,10 @@ wheel: fmu-all $(PACKAGE_INSTALLED)
 	$(call heading,Native library of the Python package for every platform)
 	@rm -rf target/native
 	@$(CARGO) fmu native --all
+	@$(MAKE) --no-print-directory pack-wheel
+
+# From what is there.
+pack-wheel: $(PACKAGE_INSTALLED)
 	$(call heading,Wheel)
 	@$(call build_wheel)
 
@@ -229,7 +233,7 @@ bless: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,New bounds of the instructions of the hot calls)
 	@$(PYTEST) tests/performance -q --bless -rP | grep before
 
-release-tests: $(TESTS_INSTALLED) $(RELEASE_INSTALLED)
+release-tests: fmu native $(TESTS_INSTALLED) $(RELEASE_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Release)
 	@$(PYTEST) tests/release $(JUNIT)
 
@@ -238,7 +242,7 @@ host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	@$(CARGO) build --quiet --example run_with_fmi
 	@$(PYTEST) tests/hosts $(JUNIT)
 
-test-platforms: fmu-all $(PACKAGE_INSTALLED) $(TESTS_INSTALLED)
+test-platforms: wheel $(TESTS_INSTALLED)
 	$(call heading,Tests of the platforms)
 	@$(PYTEST) tests/platforms -rsP --no-header
 	@$(PYTEST) tests/fmpy/test_archive.py

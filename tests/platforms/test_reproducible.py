@@ -1,19 +1,23 @@
-"""Two builds of the same sources, in different folders, give the same FMU byte for byte."""
+"""Two builds of the same sources, in different folders, give the same FMU and native library byte for byte."""
 
 import os
 import shutil
 import subprocess
 import zipfile
 
+import pytest
+
 from conftest import FMU, REPOSITORY
 
 
-def test_a_build_elsewhere_gives_the_same_bytes(fmu, tmp_path):
+@pytest.fixture(scope="module")
+def elsewhere(fmu, tmp_path_factory):
+    """Another folder, in which the same was built from the same sources."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         cwd=REPOSITORY, capture_output=True, check=True,
     )  # fmt: skip
-    elsewhere = tmp_path / "another folder"
+    elsewhere = tmp_path_factory.mktemp("build") / "another folder"
     for name in filter(None, os.fsdecode(listed.stdout).split("\0")):
         source, copy = REPOSITORY / name, elsewhere / name
         if source.is_file():
@@ -22,6 +26,18 @@ def test_a_build_elsewhere_gives_the_same_bytes(fmu, tmp_path):
     platforms = {name.split("/")[1] for name in fmu.namelist() if name.startswith("binaries/")}
     arguments = ["--all"] if platforms != {"linux64"} else []
     subprocess.run(["cargo", "fmu", *arguments], cwd=elsewhere, check=True)
+    subprocess.run(["cargo", "fmu", "native", *arguments], cwd=elsewhere, check=True)
+    return elsewhere
+
+
+def test_the_native_libraries_are_the_same(elsewhere):
+    built = sorted((REPOSITORY / "target" / "native").glob("*/dielectric_actuator_native.*"))
+    libraries = [path.relative_to(REPOSITORY) for path in built if path.suffix in (".so", ".dll", ".dylib")]
+    assert libraries
+    assert [path for path in libraries if (elsewhere / path).read_bytes() != (REPOSITORY / path).read_bytes()] == []
+
+
+def test_the_fmu_is_the_same(fmu, elsewhere):
     packed = elsewhere / FMU.relative_to(REPOSITORY)
     with zipfile.ZipFile(packed) as other:
         assert other.namelist() == fmu.namelist()

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -69,3 +70,13 @@ def test_a_release_is_a_folder_with_sums(tmp_path, monkeypatch, capsys):
     page.write_bytes(first["dielectric_elastomer_actuator.html"])
     assert release.main() == 0
     assert {path.name: path.read_bytes() for path in folder.iterdir()} == first
+
+
+def test_two_builds_of_the_wheel_are_equal():
+    def build() -> bytes:
+        done = subprocess.run(["make", "pack-wheel"], cwd=release.PROJECT, capture_output=True, text=True, timeout=600)
+        assert done.returncode == 0, done.stderr
+        (wheel,) = (release.TARGET / "wheel").glob("*.whl")
+        return wheel.read_bytes()
+
+    assert build() == build()
