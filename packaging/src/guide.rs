@@ -15,6 +15,8 @@ use pulldown_cmark::{
 use pulldown_latex::config::{DisplayMode, RenderConfig};
 use pulldown_latex::{Parser as Formula, Storage, push_mathml};
 
+use crate::page;
+
 /// Where the pages are, relative to the workspace.
 pub const PAGES: &str = "docs/guide";
 
@@ -35,12 +37,12 @@ struct Page {
     links: Vec<String>,
 }
 
-/// The guide as HTML.
+/// The guide as HTML, opened by a link to the live page where there is one beside it.
 ///
 /// # Errors
 /// If there is no page, or a page has a formula, link or figure that cannot be followed: the page and
 /// the culprit are named.
-pub fn html(workspace: &Path) -> Result<String> {
+pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
     let folder = workspace.join(PAGES);
     let mut files = Vec::new();
     for entry in
@@ -71,11 +73,19 @@ pub fn html(workspace: &Path) -> Result<String> {
             );
         }
     }
-    Ok(document(&pages))
+    Ok(document(&pages, with_page))
 }
 
 /// The pages below one another, with links to each at the head.
-fn document(pages: &[Page]) -> String {
+fn document(pages: &[Page], with_page: bool) -> String {
+    let live = if with_page {
+        format!(
+            "<p class=\"live\"><a href=\"{}\">See it move</a>: the actuator in your browser.</p>\n",
+            page::NAME
+        )
+    } else {
+        String::new()
+    };
     let entries: String = pages
         .iter()
         .map(|page| format!("<a href=\"#{}\">{}</a>\n", page.name, page.title))
@@ -88,7 +98,7 @@ fn document(pages: &[Page]) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width\">\n\
          <title>Dielectric elastomer actuator</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <nav>\n{entries}</nav>\n<main>\n{sections}</main>\n</body>\n</html>\n"
+         {live}<nav>\n{entries}</nav>\n<main>\n{sections}</main>\n</body>\n</html>\n"
     )
 }
 
@@ -345,7 +355,7 @@ mod tests {
 
     #[test]
     fn the_guide_of_the_workspace_stands_alone() -> Result<()> {
-        let guide = html(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))?;
+        let guide = html(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), true)?;
         assert!(guide.contains("<math") && guide.contains("src=\"data:image/"));
         assert!(
             !guide.contains("src=\"http") && !guide.contains("<link") && !guide.contains("<script")

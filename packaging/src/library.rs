@@ -202,7 +202,10 @@ fn c_environment(
 
 /// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary: those of the
 /// workspace, the build folder, the dependencies and the standard library.
-fn flags(project: &Metadata, toolchain: &Toolchain, platform: &Platform) -> Result<String> {
+///
+/// # Errors
+/// If cargo cannot resolve the dependencies, or the compiler does not tell where it is.
+pub fn flags(project: &Metadata, toolchain: &Toolchain, platform: &Platform) -> Result<String> {
     let mut replaced: Vec<(String, String)> = resolve(project, platform)?
         .packages
         .iter()

@@ -2,10 +2,13 @@
 //! library and of the libraries that the linker adds.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::env;
 use std::fs;
 use std::path::PathBuf;
+use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
+use cargo_metadata::semver::Version;
 use cargo_metadata::{DependencyKind, Metadata, Package, PackageId};
 use object::BinaryFormat;
 
@@ -13,7 +16,7 @@ use crate::archive::Entries;
 use crate::library;
 use crate::platform::Platform;
 use crate::toolchain::Toolchain;
-use crate::zig::Zig;
+use crate::zig::{Zig, said};
 
 /// Folder in the FMU.
 const FOLDER: &str = "documentation/licenses";
@@ -78,7 +81,7 @@ pub fn add(
 
 /// Every linked crate with its version and licence, then the texts, each once.
 fn crates(project: &Metadata, platforms: &[&Platform], package: &Package) -> Result<String> {
-    let mut linked = BTreeMap::new();
+    let mut linked = Linked::new();
     for platform in platforms {
         let resolved = library::resolve(project, platform)?;
         for package in linked_packages(&resolved, package)? {
@@ -88,12 +91,81 @@ fn crates(project: &Metadata, platforms: &[&Platform], package: &Package) -> Res
             );
         }
     }
-    let mut list =
-        String::from("Crates that are linked into the binaries, with their licences.\n\n");
+    listed(
+        "Crates that are linked into the binaries, with their licences.",
+        &linked,
+    )
+}
+
+/// What the live page has to say of the crates in its WebAssembly, and of our own licences.
+///
+/// # Errors
+/// If cargo does not tell which they are, or a licence cannot be read.
+pub fn of_the_page(project: &Metadata, browser: &Platform, package: &str) -> Result<String> {
+    let answer = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+        .current_dir(&project.workspace_root)
+        .args(["tree", "--locked", "--package", package])
+        .args(["--target", browser.triple])
+        .args(["--edges", "normal,no-proc-macro"])
+        .args(["--prefix", "none", "--format", "{p}"])
+        .output()
+        .context("cannot start cargo")?;
+    ensure!(answer.status.success(), "cargo tree: {}", said(&answer));
+    let tree = String::from_utf8(answer.stdout).context("cargo answered no text")?;
+    // Lines such as "serde v1.0.228 (*)".
+    let inside: BTreeSet<(&str, &str)> = tree
+        .lines()
+        .filter_map(|line| {
+            let mut words = line.split(' ');
+            Some((words.next()?, words.next()?.strip_prefix('v')?))
+        })
+        .collect();
+    let resolved = library::resolve(project, browser)?;
+    let linked: Linked = resolved
+        .packages
+        .iter()
+        .filter(|one| one.source.is_some())
+        .filter(|one| inside.contains(&(one.name.as_str(), &*one.version.to_string())))
+        .map(|one| ((one.name.to_string(), one.version.clone()), one.clone()))
+        .collect();
+    ensure!(
+        !linked.is_empty(),
+        "{package} is linked with nothing: {tree}"
+    );
+    let mut text = String::from(
+        "The page and the actuator in it: MIT or Apache-2.0, at your choice. Rust's standard \
+         library, of which parts are in the WebAssembly: the same.\n\n",
+    );
+    let ours = project.workspace_root.join("LICENSE-MIT");
+    text += &fs::read_to_string(&ours).with_context(|| format!("cannot read {ours}"))?;
+    text += "\n";
+    text += &listed(
+        "Crates that are linked into the WebAssembly, with their licences.",
+        &linked,
+    )?;
+    Ok(text)
+}
+
+/// Packages by name and version.
+type Linked = BTreeMap<(String, Version), Package>;
+
+/// The packages with their licences, then the texts, each once.
+fn listed(heading: &str, linked: &Linked) -> Result<String> {
+    let mut list = format!("{heading}\n\n");
     let mut texts: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for ((name, version), package) in &linked {
+    for ((name, version), package) in linked {
         let terms = package.license.as_deref();
-        let files = licence_files(package)?;
+        let mut files = licence_files(package)?;
+        // Where MIT may be chosen, it is; the others' long text would be there ten times.
+        let is_of = |file: &PathBuf, name: &str| {
+            let file = file.file_name().unwrap_or_default().to_string_lossy();
+            file.to_uppercase().contains(name)
+        };
+        if terms.is_some_and(|terms| terms.contains(" OR "))
+            && files.iter().any(|file| is_of(file, "MIT"))
+        {
+            files.retain(|file| !is_of(file, "APACHE"));
+        }
         ensure!(
             terms.is_some() || !files.is_empty(),
             "the crate {name} {version} names no licence"

@@ -8,6 +8,7 @@ mod icon;
 mod inspect;
 mod library;
 mod licences;
+mod page;
 mod platform;
 mod quiet;
 mod toolchain;
@@ -82,6 +83,8 @@ enum Verb {
     Guide,
     /// Build the library that carries the core into Python, in target/native
     Native,
+    /// Write the live page to target/page
+    Page,
 }
 
 fn main() -> ExitCode {
@@ -91,6 +94,7 @@ fn main() -> ExitCode {
         Verb::Describe { check } => describe(check),
         Verb::Guide => write_guide(),
         Verb::Native => native(arguments.all),
+        Verb::Page => write_page(),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
@@ -119,14 +123,22 @@ fn pack(all: bool) -> Result<()> {
     let platforms: Vec<&Platform> = built.iter().map(|(platform, _)| *platform).collect();
     let mut shared = Entries::new();
     shared.insert("model.png".into(), icon::png()?);
-    let guide = guide::html(project.workspace_root.as_std_path())?;
+    let page = page::html(&project);
+    let guide = guide::html(project.workspace_root.as_std_path(), page.is_ok())?;
     shared.insert("documentation/index.html".into(), guide.into());
+    let without_page = match page {
+        Ok(page) => {
+            shared.insert(format!("documentation/{}", page::NAME), page.into());
+            String::new()
+        }
+        Err(error) => format!("  documentation/{}: not packed. {error:#}\n", page::NAME),
+    };
     let core = library::root_package(&project)?;
     licences::add(&mut shared, &project, &built[0].1, &zig, &platforms, core)?;
     for fmu in FMUS {
         pack_one(fmu, shared.clone(), &project, &zig, &built)?;
     }
-    print!("{missing}");
+    print!("{missing}{without_page}");
     Ok(())
 }
 
@@ -251,14 +263,31 @@ fn native(all: bool) -> Result<()> {
     Ok(())
 }
 
-/// Writes the user's guide.
+/// Writes the user's guide, with the live page beside it where there is one.
 fn write_guide() -> Result<()> {
     let project = project()?;
-    let path = project.target_directory.join("guide/index.html");
-    let text = guide::html(project.workspace_root.as_std_path())?;
-    fs::create_dir_all(project.target_directory.join("guide"))?;
+    let folder = project.target_directory.join("guide");
+    let path = folder.join("index.html");
+    let page = fs::read(project.target_directory.join("page/index.html")).ok();
+    let text = guide::html(project.workspace_root.as_std_path(), page.is_some())?;
+    fs::create_dir_all(&folder)?;
     fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
+    if let Some(page) = page {
+        fs::write(folder.join(page::NAME), page)?;
+    }
     println!("{path}");
+    Ok(())
+}
+
+/// Writes the live page.
+fn write_page() -> Result<()> {
+    let project = project()?;
+    let size = page::html(&project)?.len() as u64;
+    println!(
+        "{}: {}",
+        project.target_directory.join("page/index.html"),
+        kibibytes(size)
+    );
     Ok(())
 }
 

@@ -1,0 +1,210 @@
+"""The live page in a real browser: it runs the actuator of the FMU, and everybody can use it."""
+
+import math
+import os
+import re
+import subprocess
+
+import pytest
+from conftest import PAGE, REPOSITORY
+from dielectric_actuator import Actuator
+
+VACUUM = 8.8541878188e-12  # F/m, CODATA 2022
+SILICONE = {
+    "voltage": 650.0, "prestress": 0.0, "driveVoltage": 0.0, "driveFrequency": 100.0, "thickness": 10.0, "side": 0.1,
+    "surfaceEnergy": 20.0, "surfaceTension": 20.0, "surfaceElasticity": 126.0, "modulus": 303.0, "density": 1100.0,
+    "relativePermittivity": 2.8,
+}  # fmt: skip
+"""The paper's material in the units of the page."""
+
+
+def fragment(**changes) -> str:
+    return "&".join(f"{key}={value}" for key, value in {**SILICONE, **changes}.items())
+
+
+def scene(device: dict) -> tuple[dict, float]:
+    """The FMU's start values for a device, and the unit of its time in seconds; worked out apart from the page."""
+    thickness, side = device["thickness"] * 1e-6, device["side"] * 1e-3
+    modulus, density = device["modulus"] * 1e3, device["density"]
+    volt = math.sqrt(VACUUM * device["relativePermittivity"] / modulus) / thickness
+    second = math.sqrt(12 * modulus / (density * thickness**2))
+    surface = 1e-3 / (modulus * thickness)
+    return {
+        "phi": device["voltage"] * volt,
+        "S": device["prestress"] * 1e3 / modulus,
+        "c": side**2 / thickness**2,
+        "gamma_s": device["surfaceEnergy"] * surface,
+        "tau_s": device["surfaceTension"] * surface,
+        "E_s": device["surfaceElasticity"] * surface,
+        "phi_ac": device["driveVoltage"] * volt,
+        "omega_ac": 2 * math.pi * device["driveFrequency"] * 1e3 / second,
+    }, 1 / second
+
+
+@pytest.mark.parametrize("changes", [
+    {},
+    {"thickness": 1.0, "side": 0.01, "voltage": 75.0, "prestress": 30.0},
+    {"driveVoltage": 250.0, "voltage": 100.0, "driveFrequency": 150.0},
+    {"side": 20.0, "thickness": 50.0, "modulus": 590.0, "voltage": 4000.0, "surfaceElasticity": 0.0},
+], ids=["paper", "thin", "driven", "wide"])  # fmt: skip
+def test_the_motion_is_that_of_the_fmu(visit, changes):
+    seen = visit(fragment(**changes))
+    seen.advance(60)
+    values, unit = scene({**SILICONE, **changes})
+    with Actuator() as fmu:
+        fmu.start(values, tolerance=1e-10)
+        time = seen.reading("time") / unit
+        fmu.advance(time)
+        assert seen.reading("stretch") == pytest.approx(fmu.get("lambda"), abs=1e-10)
+        assert abs(seen.reading("stretch") - 1) > 1e-3
+        volts = values["phi"] and {**SILICONE, **changes}["voltage"] / values["phi"]
+        slow = fmu.get("phi_pull_in_static") * volts
+        assert seen.reading("slowPullIn") == pytest.approx(slow, rel=1e-12)
+        assert seen.reading("voltage") == pytest.approx(fmu.get("phi_total") * volts, rel=1e-10)
+
+
+def test_a_slider_is_moved_by_keys_and_acts_at_once(visit):
+    seen = visit(fragment())
+    slider = seen.page.get_by_role("slider", name="Voltage", exact=True)
+    slider.focus()
+    before = seen.reading("voltage")
+    for _ in range(20):
+        slider.press("ArrowRight")
+    after = seen.reading("voltage")
+    assert before == 650.0 and after > before + 10
+    assert slider.get_attribute("aria-valuetext") == f"{after:.4g} V"
+    assert f"voltage={after:.12g}&" in seen.page.url
+    seen.page.click("#advance")
+    values, unit = scene({**SILICONE, "voltage": after})
+    with Actuator() as fmu:
+        fmu.start(values, tolerance=1e-10)
+        fmu.advance(seen.reading("time") / unit)
+        assert seen.reading("stretch") == pytest.approx(fmu.get("lambda"), abs=1e-12)
+
+
+def test_the_snap_is_seen_and_said(visit):
+    ideal = {"surfaceEnergy": 0, "surfaceTension": 0, "surfaceElasticity": 0}
+    seen = visit(fragment(voltage=700, **ideal))
+    sign = seen.page.locator("#sign")
+    assert seen.reading("pullIn") == pytest.approx(0.6469836322448274 * 1105.523384746737, rel=1e-12)
+    assert "15.3 V to go" in sign.inner_text() and sign.get_attribute("role") == "alert"
+    seen.page.fill("#voltage", "720")
+    seen.page.press("#voltage", "Enter")
+    assert "beyond pull-in" in sign.inner_text()
+    seen.page.click("#restart")
+    seen.page.click("#play")
+    seen.page.wait_for_function("document.getElementById('sign').textContent.includes('nothing holds')")
+    assert sign.get_attribute("class") == "snapped" and "Snap!" in sign.inner_text()
+    seen.page.click("#restart")
+    assert "Snap" not in sign.inner_text()
+
+
+def test_below_pull_in_nothing_snaps_and_elasticity_brings_it_back(visit):
+    for changes, snaps in (({"surfaceElasticity": 0, "voltage": 714}, False), ({"surfaceElasticity": 30, "voltage": 735}, True)):
+        seen = visit(fragment(surfaceEnergy=0, surfaceTension=0, **changes))
+        seen.advance(120)
+        said = seen.page.inner_text("#sign")
+        assert ("Snap!" in said) == snaps, said
+        assert "nothing holds" not in said
+
+
+def test_the_address_is_the_state(visit):
+    seen = visit()
+    seen.page.select_option("#preset", label="Sylgard 186, 50 µm")
+    shared = seen.page.url.partition("#")[2]
+    again = visit(shared)
+    assert again.page.input_value("#modulus") == "590"
+    assert again.page.locator("#preset option:checked").inner_text() == "Sylgard 186, 50 µm"
+    again.page.fill("#modulus", "600")
+    again.page.press("#modulus", "Enter")
+    assert again.page.locator("#preset option:checked").inner_text() == "Your own"
+
+
+@pytest.mark.parametrize("bad, said", [
+    ("voltage=loud", "Voltage is not a number"),
+    ("thickness=-3", "Thickness of -3 µm is below 0.1 µm"),
+    ("colour=red", "nothing is called colour"),
+    ("density=", "Density is not a number"),
+])  # fmt: skip
+def test_a_bad_address_is_said_and_the_rest_of_it_taken(visit, bad, said):
+    seen = visit(f"side=0.2&{bad}")
+    assert said in seen.page.inner_text("#status")
+    assert seen.page.input_value("#side") == "0.2"
+
+
+def test_a_bad_number_is_refused_with_its_reason(visit):
+    seen = visit(fragment())
+    for key, text, reason in (
+        ("thickness", "0", "below 0.1 µm"), ("modulus", "", "not a number"), ("surfaceEnergy", "-1", "below 0 mN/m"),
+    ):  # fmt: skip
+        before = seen.page.url
+        seen.page.fill(f"#{key}", text)
+        seen.page.press(f"#{key}", "Tab")
+        assert reason in seen.page.inner_text(f"#{key}-fault")
+        assert seen.page.get_attribute(f"#{key}", "aria-invalid") == "true"
+        assert seen.page.url == before
+    # The model's own limits speak too.
+    seen.page.fill("#voltage", "1e9")
+    seen.page.press("#voltage", "Tab")
+    assert "phi" in seen.page.inner_text("#status") and seen.reading("voltage") == 650.0
+
+
+def test_every_control_has_a_name_and_can_be_reached_by_keys(visit):
+    seen = visit(fragment())
+    unnamed = seen.page.evaluate("""() => [...document.querySelectorAll("input, select, button, canvas#membrane")]
+        .filter((one) => !(one.labels?.length || one.getAttribute("aria-label") || one.textContent.trim()))
+        .map((one) => one.id)""")
+    assert not unnamed
+    reached = set()
+    for _ in range(60):
+        seen.page.keyboard.press("Tab")
+        reached.add(seen.page.evaluate("document.activeElement.id"))
+    assert reached >= {"play", "restart", "advance", "pace", "share", "preset", *SILICONE}
+    assert reached >= {f"{key}-slider" for key in SILICONE}
+    seen.page.focus("#restart")
+    seen.page.keyboard.press("Enter")
+    assert seen.page.inner_text("#status") == "Restarted from rest."
+    assert "%" in seen.page.get_attribute("#membrane", "aria-label")
+
+
+def test_it_stands_still_where_less_motion_is_wanted(visit):
+    still, moving = visit(fragment()), visit(fragment(), reduced_motion="no-preference")
+    moving.page.wait_for_function("document.querySelector('[data-reading=time]').dataset.value > 0")
+    assert still.reading("time") == 0.0
+    assert still.page.inner_text("#play") == "Play" and moving.page.inner_text("#play") == "Pause"
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("width", [1280, 400])
+def test_it_fits_and_is_drawn_in_both_schemes(visit, width, scheme):
+    seen = visit(fragment(surfaceElasticity=0, voltage=715), width=width, color_scheme=scheme)
+    seen.advance(100)
+    assert seen.page.evaluate("document.documentElement.scrollWidth") <= width
+    # Each canvas shows more than one colour.
+    colours = seen.page.evaluate("""() => [...document.querySelectorAll("canvas")].map((canvas) => {
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return new Set(new Uint32Array(data.buffer)).size;
+    })""")
+    assert len(colours) == 5 and min(colours) > 5
+    paper = seen.page.evaluate("getComputedStyle(document.body).backgroundColor")
+    bright = sum(map(int, re.findall(r"\d+", paper)[:3])) > 3 * 128
+    assert bright == (scheme == "light")
+    folder = PAGE.parent / "screenshots"
+    folder.mkdir(exist_ok=True)
+    seen.page.screenshot(path=folder / f"{scheme}_{width}.png", full_page=True)
+
+
+def test_the_page_stands_alone_and_is_put_together_the_same_again(tmp_path):
+    text = PAGE.read_text()
+    assert "uPlot" in text and "Permission is hereby granted" in text
+    assert not re.search(r'(src|href)="(?!data:|#)', text)
+    assert str(REPOSITORY) not in text
+    environment = dict(os.environ)
+    assert "NODE" in environment, "run by make test, or after eval \"$(make -s env)\""
+    core = REPOSITORY / "target" / "wasm32-unknown-unknown" / "page" / "page_core.wasm"
+    again = tmp_path / "again.html"
+    subprocess.run(
+        [environment["NODE"], REPOSITORY / "page" / "build.mjs", core, PAGE.parent / "licences.txt", again],
+        check=True, timeout=60,
+    )  # fmt: skip
+    assert again.read_bytes() == PAGE.read_bytes()
