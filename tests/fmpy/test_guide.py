@@ -105,4 +105,4 @@ def test_links_between_pages_lead_somewhere():
     pages = {page.name: page.read_text() for page in GUIDE.glob("*.md")}
     for name, text in pages.items():
         for target in re.findall(r"\]\((?!https://)([^)#]+\.md)", text):
-            assert target in pages or target == "model.md", f"{name} links to {target}"
+            assert target in pages, f"{name} links to {target}"

@@ -6,6 +6,7 @@ import re
 import subprocess
 
 import pytest
+
 from conftest import PAGE, REPOSITORY
 from dielectric_actuator import Actuator
 
@@ -100,7 +101,10 @@ def test_the_snap_is_seen_and_said(visit):
 
 
 def test_below_pull_in_nothing_snaps_and_elasticity_brings_it_back(visit):
-    for changes, snaps in (({"surfaceElasticity": 0, "voltage": 714}, False), ({"surfaceElasticity": 30, "voltage": 735}, True)):
+    for changes, snaps in (
+        ({"surfaceElasticity": 0, "voltage": 714}, False),
+        ({"surfaceElasticity": 30, "voltage": 735}, True),
+    ):
         seen = visit(fragment(surfaceEnergy=0, surfaceTension=0, **changes))
         seen.advance(120)
         said = seen.page.inner_text("#sign")
@@ -200,7 +204,7 @@ def test_the_page_stands_alone_and_is_put_together_the_same_again(tmp_path):
     assert not re.search(r'(src|href)="(?!data:|#)', text)
     assert str(REPOSITORY) not in text
     environment = dict(os.environ)
-    assert "NODE" in environment, "run by make test, or after eval \"$(make -s env)\""
+    assert "NODE" in environment, 'run by make test, or after eval "$(make -s env)"'
     core = REPOSITORY / "target" / "wasm32-unknown-unknown" / "page" / "page_core.wasm"
     again = tmp_path / "again.html"
     subprocess.run(

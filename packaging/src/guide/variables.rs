@@ -1,0 +1,97 @@
+//! The table of variables, from the variables themselves.
+
+use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
+use dielectric_elastomer_actuator::variables::{
+    Causality, Enumeration, Kind, Variability, Variable,
+};
+
+use super::escaped;
+
+/// The table as HTML.
+pub fn table() -> String {
+    let rows: String = VARIABLES.iter().map(row).collect();
+    format!(
+        "<div class=\"wide\" tabindex=\"0\"><table class=\"variables\">\n<thead><tr><th>Name</th><th>Kind</th>\
+         <th>Unit</th><th>Start</th><th>Allowed</th><th>Meaning</th></tr></thead>\n<tbody>\n{rows}</tbody>\n\
+         </table></div>\n"
+    )
+}
+
+fn row(variable: &Variable<Nondimensional>) -> String {
+    let kind = match (variable.causality, variable.variability) {
+        (Causality::Parameter, Variability::Tunable) => "tunable parameter",
+        (Causality::Parameter, _) => "parameter",
+        (Causality::Input, _) => "input",
+        (Causality::Output, _) => "output",
+        (Causality::Local, _) => "local",
+    };
+    let set = matches!(variable.causality, Causality::Parameter | Causality::Input);
+    let allowed = match variable.kind {
+        Kind::Real { min, max, .. } if min == f64::MIN && max == f64::MAX => String::new(),
+        Kind::Real { min, max, .. } if max == f64::MAX => format!("from {}", number(min)),
+        Kind::Real { min, max, .. } => format!("{} to {}", number(min), number(max)),
+        Kind::Boolean => "true, false".to_owned(),
+        Kind::Enumeration(enumeration) => listed(enumeration, |number, name, _| {
+            format!("{number}: <code>{name}</code>")
+        }),
+    };
+    let mut meaning = escaped(variable.description);
+    if let Kind::Enumeration(enumeration) = variable.kind {
+        meaning += ":<br>";
+        meaning += &listed(enumeration, |number, _, text| {
+            format!("{number}: {}", escaped(text))
+        });
+    }
+    let (unit, allowed) = match variable.kind {
+        Kind::Real { .. } => (variable.unit.name, allowed),
+        _ => ("", allowed),
+    };
+    let start = match (variable.kind, variable.start) {
+        (_, None) => String::new(),
+        (Kind::Boolean, Some(value)) => (value != 0.0).to_string(),
+        (_, Some(value)) => number(value),
+    };
+    // A result lies in its range; nobody may set it.
+    let allowed = if set { allowed } else { String::new() };
+    format!(
+        "<tr><td><code>{}</code></td><td>{kind}</td><td>{unit}</td><td>{start}</td><td>{allowed}</td>\
+         <td>{meaning}</td></tr>\n",
+        variable.name,
+    )
+}
+
+/// The items of an enumeration, a line each, of its number, name and meaning.
+fn listed(enumeration: &Enumeration, line: impl Fn(usize, &str, &str) -> String) -> String {
+    let lines: Vec<String> = (1..)
+        .zip(enumeration.items)
+        .map(|(number, (name, meaning))| line(number, name, meaning))
+        .collect();
+    lines.join("<br>")
+}
+
+/// A number as people write it: powers of ten where it is long.
+fn number(value: f64) -> String {
+    let plain = value.to_string();
+    let text = if plain.len() <= 6 {
+        plain
+    } else {
+        format!("{value:e}")
+    };
+    text.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_variable_is_there_with_what_may_be_set() {
+        let table = table();
+        for variable in &VARIABLES {
+            let cell = format!("<code>{}</code></td>", variable.name);
+            assert!(table.contains(&cell), "{}", variable.name);
+        }
+        assert!(table.contains("true, false") && table.contains("1: <code>hold</code>"));
+        assert!(table.contains("<td>rad</td>"));
+    }
+}
