@@ -221,7 +221,7 @@ documentation-tests: $(TESTS_INSTALLED)
 	$(call heading,Rust tests in the documentation)
 	@$(PYTEST) tests/documentation $(JUNIT)
 
-fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
+fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,FMPy tests)
 	@$(PYTEST) tests/fmpy $(JUNIT)
 
