@@ -69,9 +69,17 @@ def test_documentation_stands_alone(archive, description):
     assert page.loaded and all(source.startswith("data:image/") for source in page.loaded)
     inside = {link[1:] for link in page.links if link.startswith("#")}
     assert inside <= page.places
-    assert all(link.startswith(("#", "https://")) for link in page.links)
+    assert all(link.startswith(("#", "https://")) or link == "actuator.html" for link in page.links)
     for variable in description.modelVariables:
         assert f"<code>{variable.name}</code>" in text
+
+
+def test_the_live_page_opens_the_documentation(archive):
+    text = archive.read("documentation/index.html").decode()
+    assert text.index('href="actuator.html"') < text.index("<nav>")
+    page = archive.read("documentation/actuator.html").decode()
+    assert not re.search(r'(src|href)="(?!data:|#)', page)
+    assert "uPlot" in page and len(page) < 500_000
 
 
 def test_every_page_of_the_guide_is_in_the_documentation(archive):

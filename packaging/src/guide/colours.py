@@ -8,4 +8,6 @@ from pygments.formatters import HtmlFormatter
 from pygments.lexers import get_lexer_by_name
 
 formatter = HtmlFormatter(nowrap=True)
-json.dump([highlight(code, get_lexer_by_name(language), formatter) for language, code in json.load(sys.stdin)], sys.stdout)
+json.dump(
+    [highlight(code, get_lexer_by_name(language), formatter) for language, code in json.load(sys.stdin)], sys.stdout
+)

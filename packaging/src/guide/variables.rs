@@ -1,6 +1,6 @@
 //! The table of variables, from the variables themselves.
 
-use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
+use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
 use dielectric_elastomer_actuator::variables::{
     Causality, Enumeration, Kind, Variability, Variable,
 };
@@ -9,7 +9,19 @@ use super::escaped;
 
 /// The table as HTML.
 pub fn table() -> String {
-    let rows: String = VARIABLES.iter().map(row).collect();
+    let rows: String = VARIABLES
+        .iter()
+        .map(row)
+        .chain(ALIASES.iter().map(|alias| {
+            format!(
+                "<tr><td><code>{}</code></td><td>further name of <code>{}</code></td>\
+                 <td></td><td></td><td></td><td>{}</td></tr>\n",
+                alias.name,
+                alias.of,
+                escaped(alias.description)
+            )
+        }))
+        .collect();
     format!(
         "<div class=\"wide\" tabindex=\"0\"><table class=\"variables\">\n<thead><tr><th>Name</th><th>Kind</th>\
          <th>Unit</th><th>Start</th><th>Allowed</th><th>Meaning</th></tr></thead>\n<tbody>\n{rows}</tbody>\n\
@@ -93,5 +105,6 @@ mod tests {
         }
         assert!(table.contains("true, false") && table.contains("1: <code>hold</code>"));
         assert!(table.contains("<td>rad</td>"));
+        assert!(table.contains("<code>stretch</code></td><td>further name of <code>lambda</code>"));
     }
 }
