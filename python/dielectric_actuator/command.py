@@ -65,12 +65,13 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--stop-time", type=float, help="default: the preset's")
     run.add_argument("--step", type=float, help="communication step (default: the preset's)")
     run.add_argument("--at-equilibrium", action="store_true", help="start at rest where the inputs hold the actuator")
-    run.add_argument("--fmu", type=Path, help="another packed FMU")
+    run.add_argument("--fmu", type=Path, help="another packed FMU with these variables")
     run.add_argument("--plot", type=Path, metavar="PNG", help="write history, pull-in margin and phase portrait")
     run.add_argument("--csv", type=Path, metavar="CSV", help="write the response")
 
     show = verb("presets", _presets, "List the presets, or show one")
     show.add_argument("name", nargs="?")
+    show.add_argument("--ssv", type=Path, metavar="SSV", help="write its start values for hosts that read such files")
 
     verb("thresholds", _thresholds, "Pull-in thresholds and equilibrium")
 
@@ -159,6 +160,8 @@ def _presets(arguments: Any, values: dict[str, float]) -> None:
     for name, value in preset.start_values.items():
         print(f"  {name} = {value:g}")
     print(f"  until {preset.stop_time:g} in steps of {preset.communication_step:g}")
+    if arguments.ssv:
+        print(preset.save_ssv(arguments.ssv))
 
 
 def _thresholds(_arguments: Any, values: dict[str, float]) -> None:
@@ -186,17 +189,20 @@ def _sweep(arguments: Any, values: dict[str, float]) -> None:
     with KeptTable(arguments.output, work) as table:
         before = table.done
         print(f"{count} scenes" + (f", going on from {before}" if before else ""), file=sys.stderr)
-        # a part takes about a second, so that little is lost and progress is seen
-        part = 8192
-        for start in range(before, count, part):
+        start, part = before, 1024
+        while start < count:
+            part_begin = time.perf_counter()
             chosen = {name: column[start : start + part] for name, column in scenes.items()}
             found = ensemble(
                 chosen, stop_time=arguments.stop_time, tolerance=arguments.tolerance, workers=arguments.workers
             )
             table.add({**chosen, **{name: found[name] for name in found.dtype.names or ()}})
-            done = min(start + part, count)
-            rate = (done - before) / (time.perf_counter() - begin)
-            print(f"{done} of {count}, {rate:.0f} a second, {(count - done) / rate:.0f} s left", file=sys.stderr)
+            start = min(start + part, count)
+            now = time.perf_counter()
+            rate = (start - before) / (now - begin)
+            print(f"{start} of {count}, {rate:.0f} a second, {(count - start) / rate:.0f} s left", file=sys.stderr)
+            # a part takes about a second, so that little is lost and progress is seen
+            part = min(max(int(part / (now - part_begin)), 128), 65536)
         print(table.complete())
 
 

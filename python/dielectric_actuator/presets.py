@@ -1,16 +1,20 @@
 """Scenes that show a motion: JSON files, in the package and wherever a fit or a user writes one.
 
-Their start values are the FMU's variables by name, so that any host can take them over.
+Their start values are the FMU's variables by name. For hosts that read them from a file, `Preset.save_ssv` writes them
+as the SSP standard 1.0 has it (section 6).
 """
 
 from __future__ import annotations
 
 import json
+import xml.etree.ElementTree as xml
 from dataclasses import asdict, dataclass, fields
 from importlib.resources import files
 from pathlib import Path
 
 from .fmu import UnknownName
+
+_SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 
 
 @dataclass(frozen=True)
@@ -28,6 +32,19 @@ class Preset:
         """Write the preset as JSON, for `load`."""
         path = Path(path)
         path.write_text(json.dumps(asdict(self), indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+        return path
+
+    def save_ssv(self, path: str | Path) -> Path:
+        """Write the start values as a parameter set, for hosts that read ``.ssv`` files."""
+        path = Path(path)
+        root = xml.Element(f"{{{_SSV}}}ParameterSet", {"version": "1.0", "name": self.title})
+        parameters = xml.SubElement(root, f"{{{_SSV}}}Parameters")
+        for name, value in self.start_values.items():
+            parameter = xml.SubElement(parameters, f"{{{_SSV}}}Parameter", {"name": name})
+            xml.SubElement(parameter, f"{{{_SSV}}}Real", {"value": repr(float(value))})
+        xml.register_namespace("ssv", _SSV)
+        xml.indent(root)
+        xml.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
         return path
 
 

@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from fmpy.ssp.ssd import read_ssv
 
 from dielectric_actuator import Actuator, command, native, presets
 from dielectric_actuator.kept import KeptTable
@@ -41,6 +42,13 @@ def test_every_preset_moves(capsys, name):
     code, out, _ = run(capsys, "presets", name)
     assert code == 0 and preset.title in out
     assert name in run(capsys, "presets")[1]
+
+
+def test_a_preset_is_written_for_other_hosts(capsys, tmp_path):
+    code, _, _ = run(capsys, "presets", "prestress", "--ssv", tmp_path / "prestress.ssv")
+    parameters = read_ssv(str(tmp_path / "prestress.ssv")).parameters
+    found = {parameter.name: float(parameter.value) for parameter in parameters}
+    assert code == 0 and found == presets.load("prestress").start_values
 
 
 def test_thresholds_are_printed(capsys):
@@ -105,7 +113,7 @@ def test_an_interrupted_sweep_goes_on_from_what_is_done(capsys, tmp_path, monkey
     code, _, err = run(capsys, "sweep", "--vary", "phi=0.1:0.5:20000", "--output", path)
     assert code == 2 and "unfinished rows of other work" in err
     code, _, err = run(capsys, "sweep", *axes, "--output", path)
-    assert code == 0 and "20000 scenes, going on from 8192" in err
+    assert code == 0 and "20000 scenes, going on from 1024" in err
     voltages = np.loadtxt(path, delimiter=",", skiprows=1, usecols=0)
     np.testing.assert_array_equal(voltages, np.linspace(0.1, 0.6, 20000))
 
