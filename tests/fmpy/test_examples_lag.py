@@ -24,7 +24,7 @@ def test_each_derivative_gains_an_order_and_the_collapse_is_located(fmu_path, tm
     assert len(errors) == 4 and len(count) == 8
     slopes = [-np.polyfit(np.log(count[2:]), np.log(error[2:]), 1)[0] for error in errors]
     assert slopes == pytest.approx([1, 2, 3, 4], abs=0.15)
-    written = (REPOSITORY / "examples" / "lag" / "README.md").read_text()
+    written = (REPOSITORY / "docs" / "guide" / "2-inputs-and-steps.md").read_text()
     for steps in (8, 32, 128, 1024):
         row = next(line for line in written.splitlines() if line.startswith(f"| {steps} |"))
         # the last digit may differ where a processor rounds otherwise
