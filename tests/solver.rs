@@ -191,8 +191,8 @@ fn energy_stays_over_a_million_units_of_time() {
     }
 }
 
-/// The same end however the way there is divided, to rounding for a constant
-/// drive and to the tolerance for an alternating one.
+/// The end of a motion does not depend on how the time is divided into steps: to rounding for a
+/// constant drive, to the tolerance for an alternating one.
 #[test]
 fn splitting_a_step_changes_nothing() {
     let cases = [

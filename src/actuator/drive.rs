@@ -39,7 +39,7 @@ impl Polynomial {
         self.term[0] = value;
     }
 
-    /// The same with another value.
+    /// This input with its value replaced and its derivatives kept.
     #[must_use]
     pub fn with_value(mut self, value: f64) -> Polynomial {
         self.set_value(value);
@@ -142,7 +142,7 @@ impl Harmonic {
         }
     }
 
-    /// The same after more turns than that.
+    /// The angle after more turns than the fast way can reduce.
     #[inline(never)]
     fn late_angle(&self, time: Double) -> f64 {
         let angle = time.scale(self.frequency);

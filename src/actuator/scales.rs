@@ -225,7 +225,7 @@ impl SiDevice {
         }
     }
 
-    /// The same actuator in nondimensional numbers.
+    /// This actuator in nondimensional numbers.
     #[must_use]
     pub fn nondimensional(&self) -> Device {
         let scales = Scales::of(self);

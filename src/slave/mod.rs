@@ -86,7 +86,7 @@ impl<M: Model> Instance<M> {
         Instance::of(Interface::CoSimulation)
     }
 
-    /// The same for either kind of FMU.
+    /// An actuator for this interface with all variables at their start values.
     #[must_use]
     pub fn of(interface: Interface) -> Instance<M> {
         Instance {

@@ -67,7 +67,7 @@ impl Double {
         }
     }
 
-    /// The same number with as much as possible in `high`: after thousands of
+    /// Renormalizes: moves as much as possible into `high` and keeps the value. After thousands of
     /// [`Double::plus`] the roundings of a grown `low` might be seen.
     #[must_use]
     pub const fn tightened(self) -> Double {

@@ -60,7 +60,7 @@ pub trait Equation {
     /// The equation with the origin of time moved to `time`.
     fn at(&self, time: &Double) -> Self::Local<'_>;
 
-    /// The same in a function of its own, where a few nanoseconds count less than its size.
+    /// [`Equation::at`] as a call, not inlined: for code in which size counts more than speed.
     #[inline(never)]
     fn seen_from(&self, time: &Double) -> Self::Local<'_> {
         self.at(time)

@@ -149,7 +149,7 @@ pub fn start(motion: &DeviceMotion, charge: f64, tolerance: f64) -> Trajectory {
     start_between(motion, charge, tolerance, LIMITS)
 }
 
-/// The same between other limits.
+/// A scene between other limits.
 pub fn start_between(
     motion: &DeviceMotion,
     charge: f64,

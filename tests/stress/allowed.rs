@@ -9,7 +9,7 @@ use std::time::Duration;
 /// some 1e-3. Measured: 1.3e-5.
 pub const FOLD: f64 = 1e-4;
 
-/// The same where repetition is not looked for, as under a varying voltage: the
+/// [`FOLD`] where the motion is not repeated, as under a varying voltage: the
 /// tolerance counts in full. Measured: 3.1e-3.
 pub const FOLD_WITHOUT_ORBITS: f64 = 1e-2;
 
@@ -28,7 +28,7 @@ pub const SEPARATRIX: f64 = 1e-2;
 /// ours and of the independent integrator.
 pub const SEPARATRIX_ROUNDING: f64 = 1e-14;
 
-/// The same on the orbit out to λ = 5.3, where the terms of the energy are of
+/// [`SEPARATRIX_ROUNDING`] on the orbit out to λ = 5.3, where the terms of the energy are of
 /// size 300 and cancel. Measured: 4e-13.
 pub const FAR_ORBIT: f64 = 1e-12;
 
@@ -56,7 +56,7 @@ pub const RANDOM: f64 = 10.0;
 /// Rounding of 30 steps in both integrators, times the growth.
 pub const RANDOM_ROUNDING: f64 = 1e-14;
 
-/// The same motion from coefficients that are rounded elsewhere, over up to 50
+/// One motion from two sets of coefficients that are rounded at different places, over up to 50
 /// radians and more; the difference grows with the number of periods.
 pub const REDUNDANCY: f64 = 1e-12;
 
@@ -79,8 +79,8 @@ pub const LATE: f64 = 1e-13;
 /// Tolerances that a communication step under constant inputs adds.
 pub const JUMPS: f64 = 10.0;
 
-/// The same where the inputs make the motion some five times faster: the rate,
-/// counted in the unit of the calm motion, is off by as much more.
+/// [`JUMPS`] where the inputs make the motion some five times faster: the error of the rate,
+/// in the unit of the slow motion, is larger by that factor.
 pub const EXTREME_JUMPS: f64 = 50.0;
 
 /// Ten tolerances for each of 300 jumps under an alternating voltage, of
@@ -93,7 +93,7 @@ pub const ENERGY: f64 = 10.0;
 /// Rounding of an energy whose terms are of size 1.
 pub const ENERGY_ROUNDING: f64 = 1e-13;
 
-/// A rounding more or less may decide over one sweep or the length of a
+/// A rounding more or less may decide over one iteration or the length of a
 /// substep, that is, over some tolerances of 1e-12, which then grow.
 pub const LEVELS: f64 = 1e-10;
 
@@ -108,6 +108,5 @@ pub const TOLERANCES: f64 = 10.0;
 /// Inputs, parameters and states at communication points are rounded.
 pub const ROUNDING: f64 = 1e-15;
 
-/// The same for each unit T of time: so much sooner or later is an actuator whose
-/// parameters are rounded.
+/// [`ROUNDING`] for each unit T of time: rounded parameters shift a motion in time by so much.
 pub const ROUNDING_WITH_TIME: f64 = 4.0 * f64::EPSILON;

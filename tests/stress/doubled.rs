@@ -19,7 +19,7 @@ fn two_sum(a: f64, b: f64) -> Doubled {
     }
 }
 
-/// The same where `a` is the larger one.
+/// The exact sum where `a` is the larger one.
 fn quick_sum(a: f64, b: f64) -> Doubled {
     let high = a + b;
     Doubled {

@@ -176,7 +176,7 @@ impl Taylor {
         [self.stretch.value(), self.rate.value()]
     }
 
-    /// The same motion with its variation from here on.
+    /// This motion, with its variational equation from here on.
     pub fn varied(&self) -> Taylor<Tangent> {
         let [value, rate] = self.state();
         let along = |value, along| Tangent { value, along };
@@ -222,8 +222,8 @@ impl<N: Number> Taylor<N> {
         assert!(ended, "the independent integrator is stuck in {load:?}");
     }
 
-    /// The same as long as the stretch stays in `range`. False where it does not, or where
-    /// the motion ends in a singularity.
+    /// Follows the motion as long as the stretch stays in `range`. False where it does not, or
+    /// where the motion ends in a singularity.
     pub fn advance_within(
         &mut self,
         actuator: &Actuator,

@@ -109,7 +109,7 @@ fn a_motion_run_back_returns_to_its_start() {
     }
 }
 
-/// The same with the voltage run back too: with x = ωt + ϑ at the turn,
+/// A driven motion, whose voltage is run back too: with x = ωt + ϑ at the turn,
 /// sin(x − ωs) = sin(ωs + π − x). The frequency is a multiple of 1/2048 and the
 /// time a whole number, so that x is exact.
 #[test]

@@ -229,7 +229,7 @@ impl<'a> LocalDevice<'a> {
         self.forces_at(load.prestress, self.membrane_voltage(load, stage), stage)
     }
 
-    /// The same under this voltage at the membrane.
+    /// [`LocalDevice::forces`] under this voltage at the membrane.
     #[inline(always)]
     fn forces_at<N: Number>(&self, prestress: N, voltage: N, stage: &Stage<N>) -> [N; 3] {
         let device = self.device;

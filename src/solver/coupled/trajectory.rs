@@ -142,7 +142,7 @@ impl Trajectory {
         }
     }
 
-    /// The same motion, its extremes recorded from now on.
+    /// Records the extremes of the motion from now on.
     #[must_use]
     pub fn recording_extremes(mut self) -> Trajectory {
         self.extremes = Some(Extremes::at(self.position()));
@@ -155,7 +155,7 @@ impl Trajectory {
         self.extremes
     }
 
-    /// The same motion computed with another set of processor instructions.
+    /// Computes the motion with this set of processor instructions.
     #[must_use]
     pub fn with_level(mut self, level: Level) -> Trajectory {
         self.level = level;

@@ -33,8 +33,9 @@ struct Weights {
     twice: [f64; ORDER],
     /// L_j(1).
     continued: [f64; ORDER],
-    /// The same integrals of what the miss adds, σ(σ+1)…(σ+9)/10!.
+    /// ∫₀¹ M(σ) dσ of what the miss adds, M = σ(σ+1)…(σ+9)/10!, for x'.
     miss_once: f64,
+    /// ∫₀¹ (1 − σ) M(σ) dσ, for x.
     miss_twice: f64,
 }
 
