@@ -7,7 +7,7 @@ TRAJECTORY = 1e-9
 """λ and dλ/dt against the multiprecision trajectories: the delivery's bound, at every communication step."""
 
 TRAJECTORY_DEFAULT = 1e-8
-"""As TRAJECTORY, over 500 time units at the default tolerance of 1e-10: errors of a hundred oscillation steps add up."""
+"""As TRAJECTORY, over 500 time units at the default tolerance 1e-10: errors of a hundred oscillation steps add up."""
 
 ORBIT_RELATIVE = 1e-9
 """Period and turning stretch, relative: the delivery's bound."""
