@@ -1,24 +1,27 @@
-//! FMI 2.0 unit, for co-simulation and model exchange, of a miniaturized
-//! dielectric elastomer actuator.
+//! The motion of a miniaturized dielectric elastomer actuator, and its FMI 2.0 unit for
+//! co-simulation and model exchange.
 //!
 //! The modules in the order in which data flows through them:
 //!
-//! 1. [`solver`]: the integrator of a second-order equation of motion;
-//! 2. [`actuator`]: the physics, Eq. 16 of the paper, folded and driven;
+//! 1. [`solver`]: integrators of second-order equations of motion;
+//! 2. [`actuator`]: the physics: equation of motion (Eq. 16 of the paper), energy, voltage;
 //! 3. [`pull_in`]: the voltages beyond which the actuator collapses;
-//! 4. [`scene`]: what a host sets; [`view`]: what it reads;
-//! 5. [`sweep`]: many scenes at once, and [`sensitivity`]: how a motion depends on
-//!    its parameters, both for who needs no host;
-//! 6. [`variables`]: the table that gives both their names and limits;
-//! 7. [`description`]: the table as `modelDescription.xml`;
-//! 8. [`slave`]: phases, checks and communication steps of an instance;
-//! 9. [`abi`]: the C functions of FMI 2.0, the only room with unsafe code.
+//! 4. [`scene`]: what a host sets; [`view`]: what a host reads;
+//! 5. [`sweep`]: many scenes at once; [`sensitivity`]: derivatives of a motion with respect to its
+//!    parameters. Both need no host;
+//! 6. [`model`]: what a model has to say; [`variables`]: what a table of variables is made of;
+//! 7. [`nondimensional`]: the model of the paper and its table;
+//! 8. [`description`]: a table as `modelDescription.xml`;
+//! 9. [`slave`]: phases, checks and communication steps of an instance;
+//! 10. `abi`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
 //!
-//! Life of an instance: `fmi2Instantiate` makes a [`slave::Instance`] with the
-//! start values of the table; setters change its [`scene::Scene`]; at the end of
-//! initialization a [`slave::Run`] folds the scene into a motion and follows it,
-//! `fmi2DoStep` by `fmi2DoStep`; getters compute what is read, through a
-//! [`view::View`]; `fmi2FreeInstance` drops it all.
+//! Life of an instance: `fmi2Instantiate` makes a [`slave::Instance`] with the start values of the
+//! table. Setters change its [`scene::Scene`]. At the end of initialization a [`slave::Run`] begins
+//! the motion of the scene; each `fmi2DoStep` continues it. Getters compute a result through a
+//! [`model::View`]. `fmi2FreeInstance` frees everything.
+//!
+//! The paper is Akhil Pratap Singh, Gal Shmuel and Atul Kumar Sharma, *Nonlinear dynamics of
+//! miniaturized dielectric elastomer actuators with surface effects*.
 
 #[cfg(feature = "fmi")]
 pub mod abi;

@@ -1,6 +1,6 @@
 //! Many independent motions at once, one in each SIMD lane.
 //!
-//! Each lane takes equal steps of its own length by the method of [`multistep`]. The motion alone,
+//! Each lane takes equal steps of its own length by the method of `multistep`. The motion alone,
 //! by a [`Trajectory`], gives what that method looks back on. It is asked again where the step has
 //! to change, where a limit is near, and where the motion does not suit a multistep method.
 //! Between, one evaluation of f serves a step of all lanes.
