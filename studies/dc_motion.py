@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import figure_style as style
 import figures
 import references
 import turning_points
@@ -23,16 +24,29 @@ TERMINATE = 2
 """Value of on_pull_in that ends the run at the collapse."""
 
 
+def shared(cases: list[references.SurfaceEffects]) -> references.SurfaceEffects:
+    """The reference case, whose values every other case has but for one."""
+    return min(cases, key=lambda case: max(len(differing(case, other)) for other in cases))
+
+
+def differing(one: references.SurfaceEffects, other: references.SurfaceEffects) -> list[str]:
+    """The surface parameters in which two cases differ."""
+    return [name for name in SURFACE_PARAMETERS if getattr(one, name) != getattr(other, name)]
+
+
+def held(prestress: float) -> str:
+    """The values of the parameters that are not varied in Figs. 2 and 3, for a title."""
+    case = shared([orbit.case for orbit in references.dc_orbits() if prestress == orbit.case.S])
+    return "the others held at " + style.setting(**{name: getattr(case, name) for name in SURFACE_PARAMETERS})
+
+
 def families_of(cases: list[references.SurfaceEffects]) -> dict[str, list[int]]:
     """For each surface parameter the positions, by growing value, of the cases that vary it alone.
 
     The reference case, which lies on all three lines, is the one that shares two parameters with every other.
     """
 
-    def differing(one, other):
-        return [name for name in SURFACE_PARAMETERS if getattr(one, name) != getattr(other, name)]
-
-    centre = next(case for case in cases if all(len(differing(case, other)) <= 1 for other in cases))
+    centre = shared(cases)
     lines = {}
     for parameter in SURFACE_PARAMETERS:
         positions = [k for k, case in enumerate(cases) if differing(case, centre) in ([], [parameter])]

@@ -21,7 +21,7 @@ import snap
 import trajectories
 import turning_points
 from comparison import Comparison
-from dc_motion import MOTION, PULL_IN_DISTANCE, TOLERANCE, oscillations, pull_in
+from dc_motion import MOTION, PULL_IN_DISTANCE, TOLERANCE, held, oscillations, pull_in
 from dielectric_actuator import Actuator, packed_fmu
 from progress import Progress
 
@@ -33,13 +33,13 @@ COMMUNICATION_STEPS = (0.01, 0.37, 1.0, 25.0)
 
 def dc_responses(actuator: Actuator, prestress: float, table: Comparison) -> figures.Figure:
     """The paper's Fig. 2 or 3: responses to a voltage step for varied surface parameters."""
-    title = f"Response to a DC voltage step, {style.setting(phi=0.6, S=prestress)}"
+    title = f"Response to a DC voltage step, {style.setting(phi=0.6, S=prestress)};\n{held(prestress)}"
     return figures.dc_responses(oscillations(actuator, prestress, table), title=title)
 
 
 def pull_in_transitions(actuator: Actuator, table: Comparison) -> figures.Figure:
     """Table 1 of the paper: thresholds found from the motion, the FMU's own, and the motion at both sides."""
-    title = "Just below and just above the dynamic pull-in voltage"
+    title = f"Just below and just above the dynamic pull-in voltage, {style.setting(S=0)}; the others held at 0"
     return figures.pull_in_transitions(pull_in(actuator, table), distance=PULL_IN_DISTANCE, title=title)
 
 

@@ -7,6 +7,7 @@ that vanishes on white paper.
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import matplotlib
@@ -50,6 +51,27 @@ TEXT_SYMBOLS = {
     "E_s": "Ēₛ",
 }
 """The same as plain text, for reports."""
+
+SHORT_NAMES = {
+    "phi^C": "phi_pull_in",
+    "lambda3^C": "lambda3_pull_in",
+    "phi_a": "phi_ac",
+    "omega": "omega_ac",
+    "t": "time",
+}
+"""Names as the terminal shortens them, for those of the FMU."""
+
+
+def in_symbols(quantity: str) -> str:
+    """What a number is, as the terminal names it, in the symbols of the text."""
+    quantity = quantity.replace("lambda3^a", "λ₃ᵃ").replace("lambda3m", "λ₃ₘ")
+
+    def symbol(found: re.Match) -> str:
+        name = found.group()
+        return TEXT_SYMBOLS.get(SHORT_NAMES.get(name, name), name)
+
+    return re.sub(r"[A-Za-z_]+\d?(?:\^C)?", symbol, quantity)
+
 
 NAMES = {
     "time": "time",

@@ -1,4 +1,4 @@
-"""Position control of the stretch: PI with feed-forward, and a predictive controller, safe near pull-in.
+"""Position control of the stretch: PID with feed-forward, and a predictive controller, safe near pull-in.
 
     python examples/control/control.py
 
@@ -25,11 +25,11 @@ from dielectric_actuator import Actuator, packed_fmu
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
-from controllers import FeedForwardPI, Predictive
+from controllers import FeedForwardPID, Predictive
 from loop import RESERVE, SCENE, Run, Scenario, close_loop
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "control"
-CONTROLLERS = {"PI with feed-forward": FeedForwardPI, "predictive": Predictive}
+CONTROLLERS = {"PID with feed-forward": FeedForwardPID, "predictive": Predictive}
 PERIOD = 1.0
 PERIODS = (0.5, 1.0, 2.0, 3.0, 4.0, 6.0)
 STEP_AT, SINE_AT, REST_AT, PUSH_AT, STOP_AT = 20.0, 120.0, 300.0, 340.0, 440.0
@@ -51,6 +51,8 @@ def pushed_prestress(time: float) -> float:
 
 TRACKING = Scenario(tracking_target, pushed_prestress, STOP_AT)
 SILENCE = (160.0, 240.0)
+HIGHEST, COLLAPSED = 1.6, 10.0
+"""Of the stretch: the end of the axis, and `lambda_max`."""
 BEYOND = Scenario(
     lambda time: 1.0 + 0.35 * min(max(time - 20.0, 0.0) / 100.0, 1.0),
     lambda time: SCENE["S"] + 0.01 * (time >= SILENCE[0]),
@@ -78,8 +80,8 @@ def draw_tracking(runs: dict[str, Run]) -> Figure:
     deviation.set(ylabel=f"{style.SYMBOLS['lambda']} $-$ target", ylim=(-0.03, 0.03))
     voltage.set_ylabel(f"{style.NAMES['phi']}  {style.SYMBOLS['phi']}")
     voltage.set_xlabel(f"{style.NAMES['time']}  {style.SYMBOLS['time']}")
-    stretch.legend(loc="lower right", ncols=3)
-    voltage.legend(loc="lower right")
+    handles = [*stretch.get_legend_handles_labels()[0], *voltage.get_legend_handles_labels()[0]]
+    figure.legend(handles=handles, loc="outside upper center", ncols=4)
     stretch.set_xlim(0, STOP_AT)
     stretch.set_title(f"Step, sine, and an unmeasured change of the prestress; sampled every {PERIOD:g}", loc="left")
     return figure
@@ -94,20 +96,33 @@ def draw_near_pull_in(runs: dict[str, Run]) -> Figure:
         stretch.plot(run.rows["time"], run.rows["stretch"], label=name, **style.curve(index))
         voltage.step(run.rows["time"], run.rows["voltage"], where="post", **style.curve(index))
         if run.pulled_in:
-            end = run.rows[-1]
-            stretch.plot(end["time"], min(end["stretch"], 1.6), "x", color=style.BLACK, markersize=9, clip_on=False)
+            left = run.rows["time"][run.rows["stretch"] > HIGHEST][0]
+            stretch.annotate(
+                f"collapse: {style.SYMBOLS['lambda']} = {COLLAPSED:g} by {style.SYMBOLS['time']} = "
+                f"{math.ceil(run.rows['time'][-1]):g}",
+                (left, HIGHEST),
+                (SILENCE[1] + 2, HIGHEST - 0.06),
+                arrowprops={"arrowstyle": "->", "color": style.BLACK},
+                fontsize=9.5,
+                va="center",
+            )
     threshold = longest["safe_voltage"][0] + RESERVE
     voltage.axhline(threshold, color=style.GREY, linestyle="--", linewidth=1.2)
     voltage.text(5, threshold + 0.01, f"dynamic threshold {style.SYMBOLS['phi_pull_in']}", fontsize=9.5)
-    stretch.set(ylim=(0.95, 1.6), ylabel=f"{style.NAMES['lambda']}  {style.SYMBOLS['lambda']}")
+    stretch.set(ylim=(0.95, HIGHEST), ylabel=f"{style.NAMES['lambda']}  {style.SYMBOLS['lambda']}")
     voltage.set_ylabel(f"{style.NAMES['phi']}  {style.SYMBOLS['phi']}")
     voltage.set_xlabel(f"{style.NAMES['time']}  {style.SYMBOLS['time']}")
-    stretch.legend(loc="upper left")
+    figure.legend(*stretch.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     stretch.set_xlim(0, BEYOND.stop_time)
     for axes in (stretch, voltage):
         axes.axvspan(*SILENCE, color=style.GREY, alpha=0.2, linewidth=0)
-    stretch.text(SILENCE[0] + 2, 0.97, "controller silent", fontsize=9.5)
-    stretch.set_title("A target beyond the fold; the cross marks the collapse", loc="left")
+        axes.text(
+            np.mean(SILENCE), 0.04, "controller silent", transform=axes.get_xaxis_transform(), ha="center", fontsize=9.5
+        )
+    stretch.set_title(
+        "(a)  a target beyond the fold: bounded controllers do not reach it, and lose nothing", loc="left"
+    )
+    voltage.set_title("(b)  at the bound no voltage is left to damp with: the stretch rings, and survives", loc="left")
     return figure
 
 
@@ -121,9 +136,9 @@ def draw_sampling(sampled: dict[str, dict[float, Run]]) -> Figure:
         cost.semilogy(runs.keys(), [1e6 * np.median(run.seconds) for run in runs.values()], label=name, **look)
     deviation.set(xlabel="sampling period", ylabel="root mean square deviation")
     deviation.set_title("(a)  sine and disturbance", loc="left")
-    cost.set(xlabel="sampling period", ylabel="microseconds a control step")
+    cost.set(xlabel="sampling period", ylabel="processor time a step, µs")
     cost.set_title("(b)  cost, from Python", loc="left")
-    deviation.legend(loc="upper left")
+    figure.legend(*deviation.get_legend_handles_labels(), loc="outside upper center", ncols=2)
     return figure
 
 
@@ -143,17 +158,18 @@ def main() -> None:
                 run = sampled.setdefault(name, {})[period] = close_loop(plant, model, kind, TRACKING, period=period)
                 note = "   pulled in" if run.pulled_in else ""
                 cost = 1e6 * np.median(run.seconds)
-                print(f"{period:<24g}{name:<24}{run.deviation(SINE_AT):>12.2e}{cost:>20.0f}{note}")
+                print(f"{period:<24g}{name:<24}{run.deviation(SINE_AT):>12.2e}{cost:>20.0f}{note}", flush=True)
         beyond = {}
-        for name, kind in CONTROLLERS.items():
-            beyond[name] = close_loop(plant, model, kind, BEYOND, period=PERIOD)
-        unguarded = close_loop(plant, model, FeedForwardPI, BEYOND, period=PERIOD, guarded=False)
-        beyond["PI without the bound"] = unguarded
-        for name, run in beyond.items():
+        guarded = {name: (kind, True) for name, kind in CONTROLLERS.items()}
+        for name, (kind, bounded) in {**guarded, "PID without the bound": (FeedForwardPID, False)}.items():
+            run = beyond[name] = close_loop(plant, model, kind, BEYOND, period=PERIOD, guarded=bounded)
+            late = run.rows["stretch"][run.rows["time"] >= SILENCE[1]]
             end = f"largest stretch {run.rows['stretch'].max():.4f}"
             if run.pulled_in:
                 end = f"pulled in by {run.rows['time'][-1]:.0f}"
-            print(f"target beyond the fold, {name}: {end}")
+            else:
+                end += f", rings at the end by {np.ptp(late) / 2:.4f}"
+            print(f"target beyond the fold, {name}: {end}", flush=True)
     figures = {
         "tracking": draw_tracking({name: runs[PERIOD] for name, runs in sampled.items()}),
         "near_pull_in": draw_near_pull_in(beyond),

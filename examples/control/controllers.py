@@ -31,8 +31,8 @@ class Measured:
     safe_voltage: float
 
 
-class FeedForwardPI:
-    """PI with damping on φ², around the voltage that holds the target.
+class FeedForwardPID:
+    """PID on φ², around the voltage that holds the target.
 
     φ² = φ²(target) + P e + I ∫e dt + D e',  e = target − λ. The square root afterwards makes the force
     linear in what the controller sets. The integral stands still while the voltage is at a bound.

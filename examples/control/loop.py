@@ -35,7 +35,8 @@ class Scenario:
 
 @dataclass(frozen=True)
 class Run:
-    """Rows of one closed loop: time, stretch, voltage, safe voltage, target; and seconds for each control step."""
+    """Rows of one closed loop: time, stretch, voltage, safe voltage, target; and seconds of processor time
+    for each control step."""
 
     rows: np.ndarray
     seconds: np.ndarray
@@ -66,9 +67,9 @@ def close_loop(
         stretch, rate, voltage, margin = plant.get("lambda", "lambda_dot", "phi", "pull_in_margin")
         safe = max(voltage + margin - RESERVE, 0.0) if guarded else 1.0
         if not scenario.silence[0] <= now < scenario.silence[1]:
-            begin = time.perf_counter()
+            begin = time.process_time()
             voltage = controller.voltage(Measured(now, stretch, rate, safe))
-            seconds.append(time.perf_counter() - begin)
+            seconds.append(time.process_time() - begin)
             plant.set({"phi": voltage})
         for row in range(rows_a_sample):
             plant.time = now + row * period / rows_a_sample

@@ -62,7 +62,7 @@ def draw(table: pa.Table) -> Figure:
     times = np.ma.masked_where(~pulled_in, on_grid("pull_in_time"))
     safe = np.ma.masked_where(pulled_in, on_grid("lambda3_lowest"))
     time_image = axes.imshow(times, cmap="viridis", norm="log", **look)
-    safe_image = axes.imshow(safe, cmap="Greys_r", vmin=0.3, vmax=1.1, **look)
+    safe_image = axes.imshow(safe, cmap="Greys_r", **look)
     levels = np.unique(prestress)
     for name, kind, line in (("phi_pull_in", "dynamic", "-"), ("phi_pull_in_static", "static", "--")):
         look = {"linestyle": line, "color": style.COLOURS[1], "linewidth": 2}
@@ -70,7 +70,7 @@ def draw(table: pa.Table) -> Figure:
     style.label(axes, "phi", "S")
     axes.set(xlim=extent[:2], ylim=extent[2:])
     axes.grid(False)
-    axes.legend(loc="upper right")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     bar = figure.colorbar(time_image, ax=axes, label="time until pull-in", pad=0.01)
     bar.ax.yaxis.set_ticks((20, 30, 50, 100), minor=False)
     bar.ax.yaxis.set_ticks((), minor=True)

@@ -83,12 +83,16 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
     left.plot([], [], color=style.BLACK, label="chaotic, for comparison")
     left.axhline(2, color=style.GREY, linestyle=":")
     left.set(ylabel="MEGNO", ylim=(0, 12))
-    left.legend(loc="upper left")
     times = indicators.times
-    right.plot(times, np.log(times) / times, color=style.GREY, linewidth=2.5, linestyle=":", label=r"$\ln t\,/\,t$")
+    right.plot(
+        times, np.log(times) / times, color=style.GREY, linewidth=2.5, linestyle=":", label=r"$\ln\bar{t}\,/\,\bar{t}$"
+    )
     right.set_yscale("log")
     right.set(ylabel="|largest Lyapunov exponent|", ylim=(1e-5, 1))
-    right.legend()
+    handles = [*left.get_legend_handles_labels()[0], *right.get_legend_handles_labels()[0]]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+    left.set_title("(a)", loc="left")
+    right.set_title("(b)", loc="left")
     figure.suptitle(rf"Order and chaos, all runs of Tables 2 to 4 and near resonance, {style.setting(phi_ac=PHI_AC)}")
 
     last, last_chaotic = indicators.megno[:, -1], chaotic.megno[:, -1]
@@ -101,10 +105,10 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
         for (case, omega, phi_ac), megno, exponent in zip(CHAOTIC, last_chaotic, chaotic.exponent[:, -1])
     ]
     verdict = (
-        f"No run of the paper is chaotic or aperiodic: at t = {window:g} MEGNO lies between {last.min():.2f} and "
+        f"No run of the paper is chaotic or aperiodic: at t̄ = {window:g} MEGNO lies between {last.min():.2f} and "
         f"{last.max():.2f} for all {len(runs)} of them and the exponents are at most "
         f"{np.abs(indicators.exponent[:, -1]).max() / law:.1f} ln t / t and fall like it. For three chaotic motions "
-        f"of the same equation MEGNO has grown to {last_chaotic.min():.1f} and more by t = {chaotic.times[-1]:g}."
+        f"of the same equation MEGNO has grown to {last_chaotic.min():.1f} and more by t̄ = {chaotic.times[-1]:g}."
     )
     names = [run.regime for run in runs] + ["chaotic"] * len(CHAOTIC)
     return Entry(
@@ -123,7 +127,7 @@ def indicator_entry(indicators: Indicators, chaotic: Indicators, checked: dict[D
         rows=[max((rows[-1] for rows in checked.values()), key=lambda row: abs(row.difference))],
         grids=[
             Grid(
-                f"Indicators at t = {window:g} (chaotic: {chaotic.times[-1]:g})",
+                f"Indicators at t̄ = {window:g} (chaotic: {chaotic.times[-1]:g})",
                 ["", "case", "ω", "MEGNO", "exponent"],
                 cells,
             )
@@ -206,7 +210,7 @@ def tolerance_entry(actuator: Actuator, found: list[Loose], window: float) -> En
     history.set_xlim(0, window)
     style.label(history, "time", "lambda3")
     history.set_title(f"(a)  harmonic, {style.setting(gamma_s=0.1, omega_ac=found[0].run.omega)}", loc="left")
-    history.legend(loc="upper left")
+    history.legend(loc="lower left", bbox_to_anchor=(0.45, 1.0), ncols=2)
     converging = figure.add_subplot(grid[0, 2])
     exact = exact_amplitude[found[0].run]
     converging.loglog(
@@ -216,7 +220,8 @@ def tolerance_entry(actuator: Actuator, found: list[Loose], window: float) -> En
     converging.set(xlabel="relative tolerance of RK45", ylabel=r"difference of $\lambda_3^a$ from the FMU")
     converging.set_title("(b)  convergence of (a)", loc="left")
     figure.suptitle(
-        f"The same motion at the tolerance of a default 4(5) solver and at 1e-12, t ≤ {window:g}; sections at kπ/ω"
+        "The same motion at the tolerance of a default 4(5) solver and at 1e-12, "
+        rf"{style.SYMBOLS['time']} $\leq$ {window:g}; sections at $k\,\pi/\bar{{\omega}}$"
     )
     for loose in found:
         (parameter,) = _extreme(loose.run)
@@ -242,7 +247,7 @@ def tolerance_entry(actuator: Actuator, found: list[Loose], window: float) -> En
             "With closer tolerances RK45 converges to the FMU (panel b). Scatter that goes away with the tolerance "
             "is an error of integration.",
             "At the superharmonic two things keep a section from closing: the slow modulation has not come round by "
-            f"t = {window:g} even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the "
+            f"t̄ = {window:g} even in the exact motion (blue; over a longer time it closes, Fig. 11), and at the "
             "default tolerance the motion drifts off its curve.",
         ],
     )

@@ -22,7 +22,7 @@ def step_responses(actuator: Actuator) -> list[Entry]:
     for number, prestress in ((2, 0.0), (3, 0.5)):
         table = Comparison()
         families = dc_motion.oscillations(actuator, prestress, table)
-        title = f"Response to a DC voltage step, {style.setting(phi=0.6, S=prestress)}"
+        title = f"Response to a DC voltage step, {style.setting(phi=0.6, S=prestress)};\n{dc_motion.held(prestress)}"
         pieces = [
             ({"varied": parameter, "value": oscillation.value}, oscillation.response)
             for parameter, oscillations in families.items()
@@ -99,7 +99,9 @@ def pull_in(actuator: Actuator) -> list[Entry]:
             axes.set_title(f"({letter})  {style.NAMES[parameter]}", loc="left")
             handles = [*figures.transition_handles(parameter, transitions, distance), mark]
             axes.legend(handles=handles, **style.BESIDE)
-        figure.suptitle("Just below and just above the dynamic pull-in voltage")
+        figure.suptitle(
+            f"Just below and just above the dynamic pull-in voltage,\n{style.setting(S=0)}; the others held at 0"
+        )
         entries.append(Entry(key, title, figure, columns))
     entries[0].rows = table.rows
     entries[0].remarks = [

@@ -83,9 +83,10 @@ def stack(columns: dict[str, Sequence], further: dict[str, Sequence]) -> dict[st
 
 
 def draw_table(
-    header: Sequence[str], rows: Sequence[Sequence[str]], *, title: str, marked: set = frozenset()
+    header: Sequence[str], rows: Sequence[Sequence[str]], *, title: str, marked: set = frozenset(), meaning: str
 ) -> Figure:
-    """A table as a figure. `marked` cells, (row, column) counted from 0, are drawn in bold on a tint."""
+    """A table as a figure. `marked` cells, (row, column) counted from 0, are drawn in bold on a tint; `meaning`
+    says below the table what that is."""
     widths = [max(len(_plain(cell)) for cell in column) + 2 for column in zip(header, *rows)]
     figure, axes = plt.subplots(figsize=(0.098 * sum(widths) + 0.4, 0.3 * (len(rows) + 1) + 0.6))
     axes.axis("off")
@@ -108,6 +109,8 @@ def draw_table(
         elif (row - 1, column) in marked:
             cell.set_facecolor("#fde9d9")
             cell.set_text_props(weight="bold")
+    if marked:
+        axes.text(0, -0.02, f"bold on orange: {meaning}", transform=axes.transAxes, va="top", fontsize=9)
     return figure
 
 

@@ -50,15 +50,17 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     panels = quarters.ravel()
     columns: dict[str, list] = {}
     lowest = np.inf
-    for letter, axes, ((left, right), (bottom, top)) in zip("abc", panels, WINDOWS):
-        omegas, voltages = np.linspace(left, right, cells), np.linspace(bottom, top, cells)
-        found = np.array(workers.map(escape_row, [(phi, omegas) for phi in voltages]))
+    meshes = [(np.linspace(*across, cells), np.linspace(*up, cells)) for across, up in WINDOWS]
+    maps = [np.array(workers.map(escape_row, [(phi, omegas) for phi in voltages])) for omegas, voltages in meshes]
+    instants = np.concatenate([found[np.isfinite(found)] for found in maps])
+    norm = LogNorm(instants.min(), instants.max())
+    for letter, axes, (omegas, voltages), found in zip("abc", panels, meshes, maps):
         lowest = min(lowest, voltages[np.isfinite(found).any(axis=1)].min(initial=np.inf))
         shown = axes.pcolormesh(
             omegas,
             voltages,
             np.where(np.isfinite(found), found, np.nan),
-            norm=LogNorm(10, SPAN),
+            norm=norm,
             cmap=CMAP,
             rasterized=True,
         )
@@ -75,7 +77,9 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     for axes, ((left, right), (bottom, top)) in zip(panels, WINDOWS[1:]):
         corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
         axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
-    figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
+    bar = figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
+    bar.ax.yaxis.set_ticks((50, 100, 200, 500), labels=("50", "100", "200", "500"))
+    bar.ax.yaxis.set_ticks((), minor=True)
 
     (left, right), (bottom, top) = WINDOWS[1]
     places = np.random.default_rng(1).uniform((left, bottom), (right, top), (pairs, 2))
@@ -91,8 +95,8 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     axes.set_title("(d)  in window (b)", loc="left")
     axes.legend()
     figure.suptitle(
-        rf"Escape of the ideal actuator from rest under $\bar\phi_a \sin\bar\omega\bar t$, t ≤ {SPAN:g} "
-        r"(pale: no escape)"
+        rf"Escape of the ideal actuator from rest under $\bar\phi_a \sin\bar\omega\bar t$, "
+        rf"{style.SYMBOLS['time']} $\leq$ {SPAN:g} (pale: no escape)"
     )
     workers.actuator.start(SLOW_ESCAPE, tolerance=1e-12)
     workers.actuator.advance(1500.0)
@@ -112,7 +116,7 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
         grids=[
             Grid(
                 "Pairs of places with different fates, window (b)",
-                ["distance in φ_a", "share"],
+                ["distance in φ̄ₐ", "share"],
                 [[f"{d:.0e}", f"{s:.2e}"] for d, s in zip(distances, shares)],
             )
         ],
@@ -121,14 +125,14 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
                 "Under AC voltage all responses remain bounded.",
                 None,
                 "Holds for the parameter sets of the paper. Without surface elasticity and at higher amplitudes the "
-                f"actuator escapes, near the harmonic resonance from φ̄ₐ = {lowest:.2f} on (ideal actuator, t ≤ "
+                f"actuator escapes, near the harmonic resonance from φ̄ₐ = {lowest:.2f} on (ideal actuator, t̄ ≤ "
                 f"{SPAN:g}), below the DC threshold of {threshold(IDEAL).phi:.3f}. With a little surface tension the "
                 "paper's own amplitude is enough: γ̄ₛ = Ēₛ = 0, τ̄ₛ = 0.02, φ̄ₐ = 0.3, ω̄ = 0.117 escapes at "
-                f"t = {late:.2f}.",
+                f"t̄ = {late:.2f}.",
             )
         ],
         remarks=[
-            f"{3 * cells * cells} runs of t ≤ {SPAN:g}, one communication step each; λ = 1e4 counts as escape. Panels "
+            f"{3 * cells * cells} runs of t̄ ≤ {SPAN:g}, one communication step each; λ = 1e4 counts as escape. Panels "
             "(b) and (c) are the frames drawn in (a) and (b).",
             f"The edge {edge}",
         ],

@@ -45,15 +45,17 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
     figure, panels = plt.subplots(1, 2, figsize=(13, 5.2), sharey=True)
     columns: dict[str, list] = {}
     wrong = total = 0
-    for axes, case in zip(panels, PULL_IN_CASES):
-        found = np.array(workers.map(pull_in_row, [(case, S, voltages) for S in prestresses]))
+    maps = [np.array(workers.map(pull_in_row, [(case, S, voltages) for S in prestresses])) for case in PULL_IN_CASES]
+    reached = np.concatenate([found[~np.isfinite(found[..., 1]), 0] for found in maps])
+    norm = LogNorm(reached.min(), reached.max())
+    for letter, axes, case, found in zip("ab", panels, PULL_IN_CASES, maps):
         lowest, collapse = found[..., 0], found[..., 1]
         collapsed = np.isfinite(collapse)
         shown = axes.pcolormesh(
             voltages,
             prestresses,
             np.where(collapsed, np.nan, lowest),
-            norm=LogNorm(0.01, 1.0),
+            norm=norm,
             cmap=CMAP,
             rasterized=True,
         )
@@ -74,10 +76,9 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
             curves["phi_pull_in_static"], prestresses, "--", color=style.BLACK, linewidth=1.3, label="static pull-in"
         )
         axes.grid(False)
-        axes.set_title(style.setting(E_s=case.E_s, gamma_s=0, tau_s=0), loc="left")
+        axes.set_title(f"({letter})  {style.setting(E_s=case.E_s, gamma_s=0, tau_s=0)}", loc="left")
         axes.set(xlabel=f"voltage  {style.SYMBOLS['phi']}", xlim=(0, 1))
         axes.plot([], [], "s", color=NO_MAP, markeredgecolor=style.GREY, markersize=9, label="collapse")
-        axes.legend(loc="upper right")
         mesh_S, mesh_phi = np.meshgrid(prestresses, voltages, indexing="ij")
         columns = stack(
             columns,
@@ -90,8 +91,10 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
             },
         )
     panels[0].set_ylabel(f"prestress  {style.SYMBOLS['S']}")
-    figure.colorbar(shown, ax=panels, label=r"smallest $\lambda_3$ reached")
-    figure.suptitle(f"From rest under a constant voltage, t ≤ {PULL_IN_SPAN:g}")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    bar = figure.colorbar(shown, ax=panels, label=r"smallest $\lambda_3$ reached")
+    bar.ax.yaxis.set_major_formatter("{x:g}")
+    figure.suptitle(rf"From rest under a constant voltage, {style.SYMBOLS['time']} $\leq$ {PULL_IN_SPAN:g}")
     return Entry(
         "map_pull_in",
         "Pull-in over voltage and prestress",
@@ -99,14 +102,14 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
         columns,
         remarks=[
             f"{2 * voltages.size * prestresses.size} runs, each of one communication step with recorded extremes. "
-            "Without surface elasticity (left) the motion collapses in the very cells beyond the FMU's phi_pull_in: "
+            "Without surface elasticity (a) the motion collapses in the very cells beyond the FMU's phi_pull_in: "
             f"{total - wrong} of {total} agree"
             + (
                 "."
                 if wrong == 0
                 else f"; the other {wrong} lie next to the threshold, where the escape takes longer than the run."
             ),
-            "With surface elasticity (right) nothing collapses where the larger orbit stays within lambda_max = 10: "
+            "With surface elasticity (b) nothing collapses where the larger orbit stays within lambda_max = 10: "
             "past the threshold λ₃ jumps to a few hundredths and the motion stays periodic.",
         ],
     )
@@ -126,6 +129,7 @@ def threshold_map(workers: Workers, cells: int) -> Entry:
     """φᶜ over each pair of surface parameters, with the exact limits E*."""
     figure, panels = plt.subplots(1, 3, figsize=(15.5, 4.8))
     columns: dict[str, list] = {}
+    meshes = []
     reach = {"gamma_s": 0.1, "tau_s": 0.1, "E_s": 0.06}
     for letter, axes, (across, up) in zip("abc", panels, (("gamma_s", "tau_s"), ("gamma_s", "E_s"), ("tau_s", "E_s"))):
         values, heights = np.linspace(0, reach[across], cells), np.linspace(0, reach[up], cells)
@@ -134,11 +138,10 @@ def threshold_map(workers: Workers, cells: int) -> Entry:
             values,
             heights,
             np.where(np.isfinite(found), found, np.nan),
-            vmin=0.6,
-            vmax=0.92,
             cmap=CMAP,
             rasterized=True,
         )
+        meshes.append(shown)
         lines = axes.contour(
             values,
             heights,
@@ -165,6 +168,9 @@ def threshold_map(workers: Workers, cells: int) -> Entry:
         mesh_up, mesh_across = np.meshgrid(heights, values, indexing="ij")
         fields = {across: mesh_across.ravel(), up: mesh_up.ravel(), other: np.zeros(found.size)}
         columns = stack(columns, {**{name: fields[name] for name in reach}, "phi_pull_in": found.ravel()})
+    limits = [mesh.get_clim() for mesh in meshes]
+    for mesh in meshes:
+        mesh.set_clim(min(low for low, _ in limits), max(high for _, high in limits))
     figure.colorbar(shown, ax=panels, label=style.SYMBOLS["phi_pull_in"])
     figure.suptitle(r"Dynamic pull-in voltage over the surface parameters, $\bar{S}$ = 0 (dots: exact $E^*$)")
     return Entry(
@@ -252,8 +258,9 @@ def period_curve(workers: Workers, points: int) -> Entry:
     left.set(xlabel=f"voltage  {style.SYMBOLS['phi']}", ylabel="period  $T$", ylim=(20, 160))
     right.set(xlabel=r"distance to pull-in  $\bar{\phi}^C - \bar{\phi}$", ylabel="period  $T$")
     right.invert_xaxis()
-    left.legend()
-    right.legend()
+    left.set_title("(a)  dotted: the pull-in voltages", loc="left")
+    right.set_title("(b)", loc="left")
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=len(PERIOD_CASES))
     figure.suptitle(r"Period of the motion from rest, $\bar{S}$ = 0")
     return Entry(
         "period",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import re
+import unicodedata
 from dataclasses import dataclass, field
 from html import escape
 from io import BytesIO
@@ -24,7 +25,8 @@ nav { columns: 18rem; font-size: .92rem; } nav ul { margin: 0; padding-left: 1.1
 table { border-collapse: collapse; font-size: .86rem; margin: .6rem 0 1.2rem; }
 th, td { border: 1px solid #d5d5d5; padding: .2rem .55rem; text-align: right; font-variant-numeric: tabular-nums; }
 th { background: #eef2f6; } td:first-child, th:first-child { text-align: left; }
-table.claims td { text-align: left; vertical-align: top; } .wide { overflow-x: auto; }
+table.claims th, table.claims td { text-align: left; vertical-align: top; }
+.bar { text-decoration: overline; } .wide { overflow-x: auto; }
 td.yes { background: #e3f1ea; } td.no { background: #fde9d9; } td.part { background: #fbf4d6; }
 td.yes::before { content: "✓ "; } td.no::before { content: "✗ "; } td.part::before { content: "≈ "; }
 .note { color: #555; font-size: .9rem; } summary { cursor: pointer; color: #0b5394; } .off { background: #fde9d9; }
@@ -52,6 +54,7 @@ def write(path: Path, entries: list[Entry], slips: list[Claim], facts: Facts) ->
         "drawing and has no numbers.</p>",
         _facts(facts),
         "<h2 id='claims'>What holds and what does not</h2>",
+        _tally([claim for entry in entries for claim in entry.claims]),
         _claims([(claim, entry.key) for entry in entries for claim in entry.claims]),
         "<h2 id='slips'>Slips in the text</h2>",
         _claims([(claim, None) for claim in slips]),
@@ -69,6 +72,21 @@ def _facts(facts: Facts) -> str:
     return f"<table class='claims'>{rows}</table>"
 
 
+def _text(text: str) -> str:
+    """A text for the page; a bar over a letter is drawn by the browser, since many a font sets it beside."""
+    decomposed = unicodedata.normalize("NFD", escape(text))
+    barred = re.sub("(.)\u0304", r"<span class='bar'>\1</span>", decomposed)
+    return unicodedata.normalize("NFC", barred)
+
+
+def _tally(claims: list[Claim]) -> str:
+    counts = {verdict: sum(claim.holds is verdict for claim in claims) for verdict in (True, None, False)}
+    return (
+        f"<p><strong>Of {len(claims)} statements of the paper {counts[True]} hold, {counts[None]} hold in part, and "
+        f"{counts[False]} do not.</strong></p>"
+    )
+
+
 def _claims(claims: list[tuple[Claim, str | None]]) -> str:
     looks = {True: ("yes", "holds"), False: ("no", "does not hold"), None: ("part", "in part")}
     rows = []
@@ -76,8 +94,8 @@ def _claims(claims: list[tuple[Claim, str | None]]) -> str:
         look, word = looks[claim.holds]
         where = f" <a href='#{key}'>evidence</a>" if key else ""
         rows.append(
-            f"<tr><td>{escape(claim.statement)}</td><td "
-            f"class='{look}'>{word}</td><td>{escape(claim.finding)}{where}</td></tr>"
+            f"<tr><td>{_text(claim.statement)}</td><td "
+            f"class='{look}'>{word}</td><td>{_text(claim.finding)}{where}</td></tr>"
         )
     header = "<tr><th>The paper</th><th>Verdict</th><th>Found</th></tr>"
     return f"<div class='wide'><table class='claims'>{header}{''.join(rows)}</table></div>"
@@ -86,14 +104,14 @@ def _claims(claims: list[tuple[Claim, str | None]]) -> str:
 def _section(entry: Entry, folder: Path) -> str:
     picture = base64.b64encode(_small(folder / f"{entry.key}.png")).decode()
     parts = [
-        f"<h2 id='{entry.key}'>{escape(entry.title)}</h2>",
+        f"<h2 id='{entry.key}'>{_text(entry.title)}</h2>",
         f"<img alt='{escape(entry.title, quote=True)}' src='data:image/png;base64,{picture}'>",
-        f"<p class='note'>Numbers: {entry.key}.csv</p>",
+        f"<p class='note'>Numbers: <a href='{entry.key}.csv'>{entry.key}.csv</a></p>",
     ]
     if entry.claims:
         parts.append(_claims([(claim, None) for claim in entry.claims]))
     if entry.remarks:
-        parts.append("<ul>" + "".join(f"<li>{escape(remark)}</li>" for remark in entry.remarks) + "</ul>")
+        parts.append("<ul>" + "".join(f"<li>{_text(remark)}</li>" for remark in entry.remarks) + "</ul>")
     if entry.rows:
         parts.append(_comparison(entry.rows))
     parts += [_grid(grid) for grid in entry.grids]
@@ -127,7 +145,7 @@ def _reduced(picture: Image.Image) -> bytes:
 def _comparison(rows: list[Row]) -> str:
     cells = [
         "<tr><td>{}</td><td{}>{}</td><td>{:.12g}</td><td>{:.12g}</td><td>{:+.1e}</td></tr>".format(
-            escape(row.quantity),
+            _text(style.in_symbols(row.quantity)),
             " class='off'" if row.misprinted else "",
             row.printed or "–",
             row.exact,
@@ -143,15 +161,15 @@ def _comparison(rows: list[Row]) -> str:
 
 
 def _grid(grid: Grid) -> str:
-    header = "".join(f"<th>{escape(_plain(cell))}</th>" for cell in grid.header)
-    rows = ["".join(f"<td>{escape(_plain(cell))}</td>" for cell in row) for row in grid.rows]
+    header = "".join(f"<th>{_text(_plain(cell))}</th>" for cell in grid.header)
+    rows = ["".join(f"<td>{_text(_plain(cell))}</td>" for cell in row) for row in grid.rows]
     table = f"<div class='wide'><table><tr>{header}</tr>{''.join(f'<tr>{row}</tr>' for row in rows)}</table></div>"
     return _folded(grid.caption, table, len(rows))
 
 
 def _folded(caption: str, table: str, length: int) -> str:
     opened = " open" if length < _FOLDED_FROM else ""
-    return f"<details{opened}><summary>{escape(caption)}</summary>{table}</details>"
+    return f"<details{opened}><summary>{_text(caption)}</summary>{table}</details>"
 
 
 def _plain(cell: str) -> str:

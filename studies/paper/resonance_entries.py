@@ -31,7 +31,8 @@ def figure_8(actuator: Actuator, responses: Responses, growth: list[tuple[int, f
     figure, rows = plt.subplots(3, 2, figsize=(12, 11), sharex=True, sharey=True)
     columns: dict[str, list] = {}
     printed = printed_resonances()
-    for letter, (parameter, values), row in zip("abc", VALUES.items(), rows):
+    letters = iter("abcdef")
+    for (parameter, values), row in zip(VALUES.items(), rows):
         for axes, prestress in zip(row, PRESTRESSES):
             for index, value in enumerate(values):
                 response = responses[varied(parameter, value, prestress)]
@@ -49,7 +50,7 @@ def figure_8(actuator: Actuator, responses: Responses, growth: list[tuple[int, f
                 columns = stack(columns, {**labels, "omega": response.omega, **fields})
             axes.plot([], [], "o", color=style.GREY, markersize=4, label="peak")
             axes.plot([], [], "|", color=style.GREY, markersize=11, markeredgewidth=1.8, label="paper's peak")
-            axes.set_title(f"({letter})  {style.NAMES[parameter]}, {style.setting(S=prestress)}", loc="left")
+            axes.set_title(f"({next(letters)})  {style.NAMES[parameter]}, {style.setting(S=prestress)}", loc="left")
             axes.set(xlim=(response.omega[0], response.omega[-1]), ylim=(0.006, 20))
             axes.legend(loc="upper right", fontsize=9)
             axes.tick_params(labelbottom=True)
@@ -233,7 +234,7 @@ def tables(responses: Responses, checked: dict[tuple[SurfaceEffects, str], list[
             Entry(
                 f"table_{number}",
                 title,
-                draw_table(header, cells, title=title, marked=marked),
+                draw_table(header, cells, title=title, marked=marked, meaning="the peak of none of the windows"),
                 columns,
                 rows=rows,
                 grids=[Grid(title, header, cells)],

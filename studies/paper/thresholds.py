@@ -73,7 +73,13 @@ def table_1(actuator: Actuator) -> Entry:
     return Entry(
         "table_1",
         "Table 1: dynamic pull-in without prestress",
-        draw_table(header, cells, title="Table 1: thickness stretch and voltage at dynamic pull-in", marked=marked),
+        draw_table(
+            header,
+            cells,
+            title="Table 1: thickness stretch and voltage at dynamic pull-in",
+            marked=marked,
+            meaning="not the exact value rounded",
+        ),
         columns,
         rows=rows,
         claims=[
@@ -81,7 +87,9 @@ def table_1(actuator: Actuator) -> Entry:
                 "Table 1: pull-in stretches and voltages, to four digits.",
                 None if wrong else True,
                 f"{entries - len(wrong)} of {entries} entries are the exact values rounded. Not so: "
-                + "; ".join(f"{row.quantity} is printed {row.printed}, exact {row.exact:.7f}" for row in wrong)
+                + "; ".join(
+                    f"{style.in_symbols(row.quantity)} is printed {row.printed}, exact {row.exact:.7f}" for row in wrong
+                )
                 + ".",
             )
         ],
@@ -117,7 +125,8 @@ def figure_4(actuator: Actuator) -> Entry:
         rows.append(worst)
         axes.set_title(f"({letter})  {style.NAMES[parameter]}", loc="left")
         axes.set_xlabel(r"thickness stretch at the overshoot  $\lambda_{3m}$")
-        axes.set(xlim=(0, 1.02), ylim=(0, 0.95))
+        # without 0, which would stand against the 1 of the panel before
+        axes.set(xlim=(0, 1.02), ylim=(0, 0.95), xticks=(0.2, 0.4, 0.6, 0.8, 1.0))
         axes.plot([], [], "x", color=style.BLACK, label="fold, dynamic pull-in")
         axes.plot([], [], ".", color=style.GREY, label="motion of the FMU")
         axes.plot([], [], "--", color=style.GREY, label="unstable")

@@ -71,9 +71,9 @@ def test_the_loops_do_what_the_page_says(fmu_path, tmp_path):
     assert done.returncode == 0, done.stderr
     rows = [line.split() for line in done.stdout.splitlines() if line[:1] in "12"]
     deviations = {(float(row[0]), row[1]): float(row[-2]) for row in rows}
-    assert set(deviations) == {(period, name) for period in (1.0, 2.0) for name in ("PI", "predictive")}
+    assert set(deviations) == {(period, name) for period in (1.0, 2.0) for name in ("PID", "predictive")}
     for period in (1.0, 2.0):
-        assert deviations[period, "predictive"] < deviations[period, "PI"] < 5e-3
+        assert deviations[period, "predictive"] < deviations[period, "PID"] < 5e-3
     ends = dict(line.split(": ") for line in done.stdout.splitlines() if line.startswith("target beyond the fold"))
     assert len(ends) == 3
     for name, end in ends.items():

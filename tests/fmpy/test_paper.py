@@ -252,7 +252,8 @@ def test_the_small_version_from_end_to_end(fmu_path, tmp_path):
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     for key in wanted:
         assert f"id='{key}'" in page, key
-    assert not re.search(r"(src|href)='(?!data:|#)", page), "the report needs no other file"
+    assert not re.search(r"(src|href)='(?!data:|#|\w+\.csv')", page), "the report needs no other file"
+    assert all((tmp_path / name).is_file() for name in re.findall(r"href='(\w+\.csv)'", page))
     assert "0.68984" in page and "0.0295185" in page
     with (tmp_path / "table_1.csv").open(newline="", encoding="utf-8") as file:
         for row in csv.DictReader(file):

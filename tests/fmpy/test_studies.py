@@ -92,7 +92,13 @@ def test_demonstration(fmu_path, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     pictures = sorted(path.name for path in tmp_path.iterdir())
-    assert pictures == ["ac_response.png", "dc_with_prestress.png", "dc_without_prestress.png", "pull_in.png"]
+    assert pictures == [
+        "ac_response.png",
+        "dc_with_prestress.png",
+        "dc_without_prestress.png",
+        "pull_in.png",
+        "snap.png",
+    ]
     assert all(str(tmp_path / name) in done.stdout for name in pictures)
     printed = [line for line in done.stdout.splitlines() if str(tmp_path) not in line]
     assert max(map(len, printed)) <= 100
