@@ -18,8 +18,8 @@ use cargo_metadata::camino::Utf8PathBuf;
 use cargo_metadata::{Message, Metadata, MetadataCommand, Package};
 use object::BinaryFormat;
 
+use crate::panic_report;
 use crate::platform::Platform;
-use crate::quiet;
 use crate::toolchain::Toolchain;
 use crate::zig::{Stand, Zig, said};
 
@@ -96,8 +96,8 @@ pub fn link(
     };
     let mut archive =
         fs::read(input).with_context(|| format!("cannot read {}", input.display()))?;
-    let reporters = quiet::undefine_reporters(&mut archive)?;
-    let stand_ins = beside("c", quiet::stand_ins(&reporters).as_bytes())?;
+    let reporters = panic_report::undefine_reporters(&mut archive)?;
+    let stand_ins = beside("c", panic_report::stand_ins(&reporters).as_bytes())?;
     let mut linker = match platform.format {
         BinaryFormat::MachO => Command::new("cc"),
         _ => zig.cc(platform),

@@ -9,8 +9,8 @@ mod inspect;
 mod library;
 mod licences;
 mod page;
+mod panic_report;
 mod platform;
-mod quiet;
 mod toolchain;
 mod zig;
 
