@@ -51,7 +51,7 @@ def draw(table: pa.Table) -> Figure:
         found, origin="lower", extent=extent, aspect="auto", interpolation="nearest", cmap="viridis", norm="log"
     )
     bar = figure.colorbar(image, ax=map_axes, label=AMPLITUDE, pad=0.01)
-    bar.ax.yaxis.set_ticks((0.03, 0.05, 0.1, 0.2, 0.5), minor=False)
+    bar.ax.yaxis.set_ticks([level for level in (0.03, 0.05, 0.1, 0.2, 0.5) if found.min() <= level <= found.max()])
     bar.ax.yaxis.set_ticks((), minor=True)
     bar.ax.yaxis.set_major_formatter("{x:g}")
     map_axes.set_ylabel(f"voltage amplitude  {style.SYMBOLS['phi_ac']}")

@@ -72,7 +72,7 @@ def draw(table: pa.Table) -> Figure:
     axes.grid(False)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     bar = figure.colorbar(time_image, ax=axes, label="time until pull-in", pad=0.01)
-    bar.ax.yaxis.set_ticks((20, 30, 50, 100), minor=False)
+    bar.ax.yaxis.set_ticks([instant for instant in (20, 30, 50, 100, 200) if times.min() <= instant <= times.max()])
     bar.ax.yaxis.set_ticks((), minor=True)
     bar.ax.yaxis.set_major_formatter("{x:g}")
     figure.colorbar(safe_image, ax=axes, label=rf"smallest {style.SYMBOLS['lambda3']} where it oscillates", pad=0.02)

@@ -78,7 +78,8 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
         corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
         axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
     bar = figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
-    bar.ax.yaxis.set_ticks((50, 100, 200, 500), labels=("50", "100", "200", "500"))
+    ticks = [instant for instant in (20, 50, 100, 200, 500) if norm.vmin <= instant <= norm.vmax]
+    bar.ax.yaxis.set_ticks(ticks, labels=[str(instant) for instant in ticks])
     bar.ax.yaxis.set_ticks((), minor=True)
 
     (left, right), (bottom, top) = WINDOWS[1]
