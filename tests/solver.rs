@@ -8,7 +8,7 @@ use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Trajectory};
-use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, State};
+use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, Sensitivity, State};
 use proptest::prelude::*;
 
 const REST: State = State {
@@ -252,11 +252,13 @@ impl Equation for Damped {
 }
 
 impl LocalEquation for Damped {
-    type Load<N: Number> = ();
+    type Load<N: Number> = N;
 
-    fn load<N: Number>(&self, _offset: N) {}
+    fn load<N: Number>(&self, offset: N) -> N {
+        offset
+    }
 
-    fn acceleration<N: Number>(&self, (): (), x: N, rate: N) -> N {
+    fn acceleration<N: Number>(&self, _time: N, x: N, rate: N) -> N {
         x.same(1.0) - x - rate * rate.same(0.2)
     }
 
@@ -264,8 +266,19 @@ impl LocalEquation for Damped {
         0.0
     }
 
-    fn load_series(&self, _state: State, _half: f64) -> Option<[f64; 5]> {
+    fn load_series(&self, _half: f64) -> Option<[[f64; 5]; 2]> {
         None
+    }
+
+    fn parts<N: Number>(time: N) -> [N; 2] {
+        [time, time.same(0.0)]
+    }
+
+    fn sensitivity(&self, _state: State) -> Sensitivity {
+        Sensitivity {
+            load: [0.0; 2],
+            rate: 0.2,
+        }
     }
 
     fn natural_frequency(&self, _state: State) -> f64 {

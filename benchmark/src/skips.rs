@@ -11,7 +11,7 @@ use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
-use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, State};
+use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, Sensitivity, State};
 use dielectric_elastomer_actuator::sweep;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
 
@@ -319,8 +319,16 @@ impl LocalEquation for LocalUnfolded<'_> {
         self.motion.load_frequency()
     }
 
-    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
-        self.motion.load_series(state, half)
+    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
+        self.motion.load_series(half)
+    }
+
+    fn parts<N: Number>(load: Load<N>) -> [N; 2] {
+        LocalMotion::parts(load)
+    }
+
+    fn sensitivity(&self, state: State) -> Sensitivity {
+        self.motion.sensitivity(state)
     }
 
     fn natural_frequency(&self, state: State) -> f64 {
@@ -373,8 +381,16 @@ impl LocalEquation for LocalIdeal<'_> {
         self.0.load_frequency()
     }
 
-    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
-        self.0.load_series(state, half)
+    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
+        self.0.load_series(half)
+    }
+
+    fn parts<N: Number>(load: Load<N>) -> [N; 2] {
+        LocalMotion::parts(load)
+    }
+
+    fn sensitivity(&self, state: State) -> Sensitivity {
+        self.0.sensitivity(state)
     }
 
     fn natural_frequency(&self, state: State) -> f64 {

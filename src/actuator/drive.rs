@@ -60,6 +60,7 @@ impl Polynomial {
 
     /// Whether the input keeps its value.
     #[must_use]
+    #[inline(always)]
     pub fn is_constant(&self) -> bool {
         // Without a branch for each; the shift drops the sign of −0.
         let bits = |sum, term: &f64| sum | term.to_bits();
@@ -266,17 +267,6 @@ impl Drive {
     }
 }
 
-/// 1, 1/2, 1/3, …
-const INVERSE: [f64; 9] = {
-    let mut inverse = [0.0; 9];
-    let mut k = 0;
-    while k < 9 {
-        inverse[k] = 1.0 / (k + 1) as f64;
-        k += 1;
-    }
-    inverse
-};
-
 /// A [`Drive`] with its origin of time moved.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalDrive<'a> {
@@ -326,18 +316,39 @@ impl LocalDrive<'_> {
     /// u = −1…1. Nothing where both are of a lower degree.
     #[inline(always)]
     pub fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
-        let Drive {
-            voltage, prestress, ..
-        } = self.drive;
-        let low = voltage.is_of_degree(1) && prestress.is_of_degree(3);
-        if self.angle.is_none() && (self.shift.is_none() || low) {
+        if let Some(shift) = self.shift {
+            return self.series_of_polynomials(shift, half);
+        }
+        self.angle?;
+        // Of (|φ| + |φ_a| eᵗᵘ)², t being the turn of the voltage: each coefficient of 2eᵗᵘ is
+        // at most an eighth of that of e²ᵗᵘ.
+        let harmonic = &self.drive.harmonic;
+        let amplitude = harmonic.amplitude.abs();
+        let size = amplitude * (amplitude + 0.125 * self.drive.voltage.value().abs());
+        let turn = 2.0 * (harmonic.frequency * half).abs();
+        let square = turn * turn;
+        let fourth = size * (1.0 / 24.0) * (square * square);
+        let fifth = fourth * turn;
+        let series = [
+            fourth,
+            fifth * (1.0 / 5.0),
+            fourth * square * (1.0 / 30.0),
+            fifth * square * (1.0 / 210.0),
+            fourth * square * square * (1.0 / 1680.0),
+        ];
+        Some([series, [0.0; 5]])
+    }
+
+    /// The same where the inputs have derivatives.
+    #[inline(never)]
+    fn series_of_polynomials(&self, shift: f64, half: f64) -> Option<[[f64; 5]; 2]> {
+        let (voltage, prestress) = (&self.drive.voltage, &self.drive.prestress);
+        if self.angle.is_none() && voltage.is_of_degree(1) && prestress.is_of_degree(3) {
             return None;
         }
         let about_middle = |input: &Polynomial| {
             let mut input = *input;
-            if let Some(shift) = self.shift {
-                input.shift(shift + half);
-            }
+            input.shift(shift + half);
             let mut power = 1.0;
             input.term.map(|term| {
                 let size = term.abs() * power;
@@ -348,16 +359,12 @@ impl LocalDrive<'_> {
         let mut series = [0.0; 9];
         series[..=HIGHEST_DERIVATIVE].copy_from_slice(&about_middle(voltage));
         if self.angle.is_some() {
-            let Harmonic {
-                amplitude,
-                frequency,
-                ..
-            } = self.drive.harmonic;
-            let turn = frequency.abs() * half;
-            let mut size = amplitude.abs();
+            let harmonic = &self.drive.harmonic;
+            let turn = harmonic.frequency.abs() * half;
+            let mut size = harmonic.amplitude.abs();
             for (k, sum) in series.iter_mut().enumerate() {
                 *sum += size;
-                size *= turn * INVERSE[k];
+                size *= turn / (k + 1) as f64;
             }
         }
         let squared = |k: usize| (0..=k).map(|i| series[i] * series[k - i]).sum();

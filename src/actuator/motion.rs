@@ -6,7 +6,7 @@ use super::coefficients::Coefficients;
 use super::drive::{Drive, LocalDrive};
 use crate::solver::double::Double;
 use crate::solver::number::Number;
-use crate::solver::{Equation, LocalEquation, State};
+use crate::solver::{Equation, LocalEquation, Sensitivity, State};
 
 /// The motion of an actuator under a drive.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -149,13 +149,27 @@ impl LocalEquation for LocalMotion<'_> {
     }
 
     #[inline(always)]
-    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]> {
-        let [squared, prestress] = self.drive.load_series(half)?;
-        let cube = state.position * state.position * state.position;
-        let mobility = 1.0 / (self.coefficients.inertia + 2.0 / (cube * cube));
-        Some(std::array::from_fn(|k| {
-            mobility * cube.mul_add(squared[k], prestress[k])
-        }))
+    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
+        self.drive.load_series(half)
+    }
+
+    #[inline(always)]
+    fn parts<N: Number>(load: Load<N>) -> [N; 2] {
+        [load.voltage_squared, load.prestress]
+    }
+
+    /// λ³/M, 1/M and |12λ'λ⁻⁷/M|, M being the inertia c + 2λ⁻⁶.
+    #[inline(always)]
+    fn sensitivity(&self, state: State) -> Sensitivity {
+        let stretch = state.position;
+        let cube = stretch * stretch * stretch;
+        let sixth = cube * cube;
+        let inverse = 1.0 / ((self.coefficients.inertia * sixth + 2.0) * stretch);
+        let by_prestress = sixth * stretch * inverse;
+        Sensitivity {
+            load: [cube * by_prestress, by_prestress],
+            rate: 12.0 * (state.rate * inverse).abs(),
+        }
     }
 
     /// √|∂λ''/∂λ| with the terms of the stiffness added up by size, since their sum

@@ -3,7 +3,7 @@
 //! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
 //! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
 //! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
-//! * `hop`: short steps of 4 nodes, where the equation changes at each of them;
+//! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`ensemble`]: many motions at once, one in each lane;
 //! * [`coupled`]: the same with first-order states and dissipation;
 //! * [`step_control`]: how long the next substep may be;
@@ -20,7 +20,6 @@ pub mod coupled;
 pub mod double;
 pub mod ensemble;
 pub mod extremes;
-mod hop;
 pub mod jet;
 pub mod lanes;
 pub mod limits;
@@ -30,6 +29,7 @@ pub mod orbit;
 mod outcome;
 mod pieces;
 pub mod segment;
+mod short_step;
 pub mod step_control;
 mod stride;
 mod tables;
@@ -81,6 +81,15 @@ pub trait Equation {
     }
 }
 
+/// How f changes in a state.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// ∂f/∂load of the two parts of the load.
+    pub load: [f64; 2],
+    /// |∂f/∂x'|.
+    pub rate: f64,
+}
+
 /// An [`Equation`] with its origin of time moved to the begin of a substep.
 pub trait LocalEquation {
     /// What f needs to know of the time, at one moment or at lanes of moments.
@@ -102,10 +111,17 @@ pub trait LocalEquation {
         4.0 * std::f64::consts::PI / self.load_frequency()
     }
 
-    /// Bounds of the load's part of f over a step of `half` to either side of its middle, in
-    /// this state: of the coefficients of u⁴ to u⁸ where it is a power series in u, −1 at the
-    /// begin and 1 at the end. Nothing where the load is of a lower degree.
-    fn load_series(&self, state: State, half: f64) -> Option<[f64; 5]>;
+    /// Bounds of the two parts of the load over a step of `half` to either side of its
+    /// middle, which begins at the origin: of the coefficients of u⁴ to u⁸ where each is a
+    /// power series in u, −1 at the begin and 1 at the end. Nothing where both are of a lower
+    /// degree.
+    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]>;
+
+    /// The two parts of a load; the second one is 0 where there is but one.
+    fn parts<N: Number>(load: Self::Load<N>) -> [N; 2];
+
+    /// How f changes with the load and the rate.
+    fn sensitivity(&self, state: State) -> Sensitivity;
 
     /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly.
     fn natural_frequency(&self, state: State) -> f64;

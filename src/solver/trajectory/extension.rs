@@ -4,11 +4,11 @@ use super::Trajectory;
 use crate::solver::collocation::{Diverged, Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
-use crate::solver::hop::{Hop, Trend};
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
 use crate::solver::pieces::{CAPACITY, Piece};
 use crate::solver::segment::{PAIRS, Segment};
+use crate::solver::short_step::{ShortStep, Trend};
 use crate::solver::step_control::Verdict;
 use crate::solver::stride::{End, Way};
 use crate::solver::{Equation, LocalEquation, State};
@@ -32,8 +32,8 @@ impl Trajectory {
         !orbits && self.strides.are_shorter_than(rest)
     }
 
-    /// Makes the first step from the origin on in one hop, if that is possible.
-    pub(super) fn hops<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
+    /// Makes the first step from the origin on in 4 nodes, if that is possible.
+    pub(super) fn takes_short_step<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
         if self.trend.is_none() {
             self.trend = Trend::first(equation, &self.time, self.start, step);
         }
@@ -41,13 +41,13 @@ impl Trajectory {
         let Some(trend) = &mut self.trend else {
             return false;
         };
-        let hop = Hop {
+        let short = ShortStep {
             time: &self.time,
             length: step,
             clear,
         };
         let control = self.control.repeated();
-        let taken = hop.take(self.level, equation, control, &mut self.start, trend);
+        let taken = short.take(self.level, equation, control, &mut self.start, trend);
         if !taken {
             // So that a guess that leads nowhere is not made again.
             self.trend = None;

@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 
 use super::double::Double;
 use super::extremes::Extremes;
-use super::hop::Trend;
 use super::limits::{Limit, Limits};
 use super::orbit::Orbit;
 pub use super::outcome::{Failure, Progress};
 use super::pieces::{Piece, Pieces};
+use super::short_step::Trend;
 use super::step_control::StepControl;
 use super::stride::Strides;
 use super::{Equation, State};
@@ -69,7 +69,7 @@ pub struct Trajectory {
     /// The last start was good for a single advance: the host changes the
     /// equation at each communication point, and looking ahead is of no use.
     restless: bool,
-    /// What f was in the last hop.
+    /// What f was in the last short step.
     trend: Option<Trend>,
     /// Where communication points lie far apart.
     strides: Strides,
@@ -223,7 +223,7 @@ impl Trajectory {
         if self.takes_strides && self.restless && self.advances == 1 {
             // First, since all that the next step does with the time waits for it.
             let time = self.time.plus(step).tightened();
-            if self.hops(equation, step) {
+            if self.takes_short_step(equation, step) {
                 self.time = time;
                 return Ok(Progress::Whole);
             }

@@ -29,7 +29,7 @@ impl Trajectory {
             && self.origin.is_finite()
             && self.recorded.is_finite()
             && first.is_none_or(|piece| piece.segment.begins_in(self.start))
-            // No piece outlives a restart: a hop, which may come first then, looks at none.
+            // No piece outlives a restart: a short step, which may come first then, looks at none.
             && (first.is_none() || self.advances > 0)
             && self.index < self.pieces.count().max(1)
             && (0.0..=self.end().value()).contains(&self.slack)
