@@ -33,6 +33,7 @@ pub mod pull_in;
 pub mod scene;
 pub mod sensitivity;
 mod shortest;
+pub mod si;
 pub mod slave;
 pub mod solver;
 pub mod sweep;

@@ -101,6 +101,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// towards it, or behind the state.
     fn limit_reached(
         scene: &Self::Scene,
+        time: &Double,
         state: &Self::State,
         tolerance: f64,
     ) -> Option<Self::Limit>;

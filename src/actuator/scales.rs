@@ -106,7 +106,7 @@ pub enum SiElasticity {
 }
 
 /// The units of the nondimensional numbers, in SI units.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
     /// t0 in s.
     pub time: Double,

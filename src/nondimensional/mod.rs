@@ -1,7 +1,7 @@
 //! The nondimensional actuator of the paper as a [`Model`]: its table of variables and the
 //! physics behind it.
 
-mod recording;
+pub(crate) mod recording;
 mod table;
 
 pub use recording::Recording;
@@ -108,7 +108,12 @@ impl Model for Nondimensional {
         }
     }
 
-    fn limit_reached(scene: &Scene, state: &State, tolerance: f64) -> Option<Limit> {
+    fn limit_reached(
+        scene: &Scene,
+        _time: &Double,
+        state: &State,
+        tolerance: f64,
+    ) -> Option<Limit> {
         let &State { position, rate } = state;
         let limits = scene.limits;
         let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };

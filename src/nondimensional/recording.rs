@@ -66,7 +66,7 @@ impl Recording {
 
 /// The position at which a motion turns on its way between two states that lie
 /// `time` apart, on the cubic through both with their rates.
-fn turn_between(from: State, to: State, time: f64) -> Option<f64> {
+pub(crate) fn turn_between(from: State, to: State, time: f64) -> Option<f64> {
     let [first, last] = [from.rate, to.rate].map(|rate| rate * time);
     if first * last >= 0.0 {
         return None;

@@ -105,7 +105,7 @@ impl<M: Model> Instance<M> {
             update.terminate = M::at_limit(&scene, limit) == AtLimit::Terminate;
             return Ok(update);
         }
-        let Some(limit) = M::limit_reached(&scene, &exchange.state, REACHED) else {
+        let Some(limit) = M::limit_reached(&scene, &exchange.time, &exchange.state, REACHED) else {
             return Ok(update);
         };
         let time = exchange.time;
@@ -142,7 +142,8 @@ impl<M: Model> Instance<M> {
         let exchange = self.exchange()?;
         let (time, state) = (exchange.time, exchange.state);
         exchange.record.include_step(&scene, time, state);
-        Ok(exchange.collapse.is_none() && M::limit_reached(&scene, &exchange.state, 0.0).is_some())
+        Ok(exchange.collapse.is_none()
+            && M::limit_reached(&scene, &exchange.time, &exchange.state, 0.0).is_some())
     }
 
     /// Sets the time of the model.

@@ -159,6 +159,12 @@ impl<M: Model> Variable<M> {
         self
     }
 
+    /// The row of an input that has this value until the host sets another.
+    pub const fn starting_at(mut self, start: f64) -> Variable<M> {
+        self.start = Some(start);
+        self
+    }
+
     /// The row in another unit than 1.
     pub const fn in_unit(mut self, unit: &'static Unit) -> Variable<M> {
         self.unit = unit;

@@ -287,7 +287,7 @@ impl<'a> LocalDevice<'a> {
 
     /// z' of the charge, where it is a state, and of the branches.
     #[inline(always)]
-    pub(super) fn first_order<N: Number>(
+    pub fn first_order<N: Number>(
         &self,
         load: &Load<N>,
         stage: &Stage<N>,

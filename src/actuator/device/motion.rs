@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::elasticity::Elasticity;
 use super::equation::{Load, LocalDevice, Powers};
 use super::parameters::{Device, Source};
-use crate::actuator::Drive;
+use crate::actuator::{Drive, Motion};
 use crate::solver::coupled::{
     CoupledEquation, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage,
 };
@@ -30,6 +30,26 @@ pub struct DeviceMotion {
     pub drive: Drive,
     /// Whether energies supplied and lost are summed up (see [`super::energy`]).
     pub records_energy: bool,
+}
+
+impl DeviceMotion {
+    /// Whether it is the motion of the paper's equation, and nothing is summed up along it.
+    #[must_use]
+    pub fn is_plain(&self) -> bool {
+        self.device.is_plain() && !self.records_energy
+    }
+
+    /// The motion of the paper's equation that it is, where it is one.
+    #[must_use]
+    pub fn plain(&self) -> Motion {
+        let mut drive = self.drive;
+        let prestress = drive.prestress.value() + self.device.spring.preload();
+        drive.prestress.set_value(prestress);
+        Motion {
+            coefficients: self.device.folded(),
+            drive,
+        }
+    }
 }
 
 impl CoupledEquation for DeviceMotion {

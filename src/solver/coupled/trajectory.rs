@@ -168,6 +168,19 @@ impl Trajectory {
         &self.time
     }
 
+    /// Sets the clock, and moves nothing. Where the equation depends on time, a
+    /// [`Trajectory::restart`] must follow.
+    pub fn set_clock(&mut self, time: Double) {
+        self.since = self.since.add(time.sub(self.time));
+        self.time = time;
+    }
+
+    /// Starts the extremes anew at the present position, or ends their recording.
+    pub fn record_extremes_anew(&mut self, records: bool) {
+        self.extremes = records.then(|| Extremes::at(self.position()));
+        self.recorded = self.now;
+    }
+
     /// Lets time pass in which nothing moves.
     pub fn wait(&mut self, time: Double) {
         self.time = self.time.add(time);

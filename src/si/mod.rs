@@ -1,0 +1,235 @@
+//! The real actuator in SI units as a [`Model`]: its table of variables and the physics behind
+//! it. The nondimensional core is the one model; `actuator::scales` is the only place with units.
+
+mod motion;
+mod record;
+mod sample;
+mod scene;
+mod table;
+mod view;
+
+pub use motion::SiMotion;
+pub use record::SiRecord;
+pub use sample::Sample;
+pub use scene::{OnBreakdown, SiScene, SiState};
+pub use table::VARIABLES;
+
+use serde::{Deserialize, Serialize};
+
+use crate::description::guid;
+use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
+use crate::shortest::Shortest;
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::jet::{Dual, TimeSeries};
+use crate::solver::limits::Limit;
+use crate::solver::number::Number;
+use crate::variables::{self, Variable};
+
+/// The marker of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Si;
+
+/// Where a motion ends.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum SiLimit {
+    /// At a limit of the stretch.
+    Stretch(Limit),
+    /// At breakdown.
+    Breakdown,
+}
+
+/// Continuous states: λ, dλ/dt, the charge and three dashpots.
+const STATE_COUNT: usize = 6;
+
+impl Model for Si {
+    const IDENTIFIER: &'static str = "DielectricElastomerActuatorSI";
+    const DESCRIPTION: &'static str = "A dielectric elastomer actuator in SI units, with an electrical and a mechanical port, \
+         losses, strain stiffening and breakdown";
+    const GUID: &'static str = guid::text(&GUID);
+    const VARIABLES: &'static [Variable<Si>] = &VARIABLES;
+    const STATES: &'static [u32] = &variables::states::<Si, STATE_COUNT>(&VARIABLES);
+    const DERIVATIVES: &'static [u32] = &variables::derivatives::<Si, STATE_COUNT>(&VARIABLES);
+    /// λ − λ_min, λ_max − λ, and how far the true field is below that of breakdown, as a part of
+    /// it.
+    const INDICATOR_COUNT: usize = 3;
+    /// Some periods of the actuator of the start values.
+    const EXPERIMENT: Experiment = Experiment {
+        stop_time: 3e-5,
+        step_size: 1e-7,
+    };
+
+    type Scene = SiScene;
+    type State = SiState;
+    type Motion = SiMotion;
+    type Record = SiRecord;
+    type Limit = SiLimit;
+    type Sample<N: Number> = Sample<N>;
+
+    fn blank() -> SiScene {
+        SiScene::BLANK
+    }
+
+    fn inputs_are_finite(scene: &SiScene) -> bool {
+        scene.since.is_finite()
+            && scene.force.is_finite()
+            && scene.sources.iter().all(|source| source.is_finite())
+    }
+
+    fn check_start(scene: &SiScene) -> Result<(), String> {
+        scene.check()
+    }
+
+    fn start(scene: &SiScene) -> SiState {
+        scene.start
+    }
+
+    fn rebase_inputs(scene: &mut SiScene, time: Double) {
+        let shift = time.since(scene.since);
+        scene.since = time;
+        scene.force.shift(shift);
+        for source in &mut scene.sources {
+            source.shift(shift);
+        }
+    }
+
+    fn begin_inputs(scene: &mut SiScene, time: Double) {
+        scene.since = time;
+    }
+
+    fn inputs_since(scene: &SiScene) -> &Double {
+        &scene.since
+    }
+
+    fn at_limit(scene: &SiScene, limit: SiLimit) -> AtLimit {
+        match limit {
+            SiLimit::Stretch(_) => scene.on_pull_in,
+            SiLimit::Breakdown if scene.on_breakdown == OnBreakdown::Terminate => {
+                AtLimit::Terminate
+            }
+            SiLimit::Breakdown => AtLimit::Hold,
+        }
+    }
+
+    fn describe(scene: &SiScene, limit: SiLimit, time: f64) -> String {
+        let time = Shortest(time);
+        let [lower, upper] = [scene.limits.lower, scene.limits.upper].map(Shortest);
+        match limit {
+            SiLimit::Stretch(Limit::Upper) => format!(
+                "the actuator was pulled in: at time {time} s its stretch reached lambda_max = {upper}"
+            ),
+            SiLimit::Stretch(Limit::Lower) => format!(
+                "the actuator collapsed: at time {time} s its stretch came down to lambda_min = {lower}"
+            ),
+            SiLimit::Breakdown => format!(
+                "the material broke down: at time {time} s its true field reached \
+                 E_breakdown*lambda^n_breakdown"
+            ),
+        }
+    }
+
+    fn limit_reached(
+        scene: &SiScene,
+        time: &Double,
+        state: &SiState,
+        tolerance: f64,
+    ) -> Option<SiLimit> {
+        let State { position, rate } = state.motion;
+        let limits = scene.limits;
+        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
+        if position >= limits.upper * (1.0 - margin(rate)) {
+            return Some(SiLimit::Stretch(Limit::Upper));
+        }
+        if position <= limits.lower * (1.0 + margin(-rate)) {
+            return Some(SiLimit::Stretch(Limit::Lower));
+        }
+        let view = View::<Si> {
+            scene,
+            place: Place::At {
+                state: *state,
+                record: SiRecord::default(),
+            },
+            time,
+            collapse: None,
+        };
+        let broken =
+            scene.on_breakdown != OnBreakdown::Flag && view.breakdown_margin_part() <= tolerance;
+        broken.then_some(SiLimit::Breakdown)
+    }
+
+    /// Once one of them has vanished, nothing is awaited any more and all stay at 1 or
+    /// λ_max − λ_min.
+    fn indicators(view: &View<Si>, indicators: &mut [f64]) {
+        let limits = view.scene.limits;
+        let stretch = view.state().motion.position;
+        let width = limits.upper - limits.lower;
+        let flagged = view.scene.on_breakdown == OnBreakdown::Flag;
+        indicators.copy_from_slice(&if view.collapse.is_some() {
+            [width, width, 1.0]
+        } else {
+            let field = if flagged {
+                1.0
+            } else {
+                view.breakdown_margin_part()
+            };
+            [stretch - limits.lower, limits.upper - stretch, field]
+        });
+    }
+
+    fn is_finite(state: &SiState) -> bool {
+        let State { position, rate } = state.motion;
+        [position, rate, state.charge]
+            .into_iter()
+            .chain(state.dashpots)
+            .all(f64::is_finite)
+    }
+
+    fn component(state: &mut SiState, place: usize) -> Option<&mut f64> {
+        let SiState {
+            motion: State { position, rate },
+            charge,
+            dashpots: [first, second, third],
+        } = state;
+        [position, rate, charge, first, second, third]
+            .into_iter()
+            .nth(place)
+    }
+
+    fn window(scene: &SiScene) -> f64 {
+        scene.extremes_window
+    }
+
+    fn check_state(view: &View<Si>) -> Result<(), String> {
+        if view.is_admitted() && view.stretch_acceleration().is_finite() {
+            return Ok(());
+        }
+        let State { position, rate } = view.state().motion;
+        let [stretch, speed] = [position, rate].map(Shortest);
+        Err(format!(
+            "there is no motion at the stretch {stretch} and its rate {speed}"
+        ))
+    }
+
+    fn state(view: &View<Si>) -> SiState {
+        view.state()
+    }
+
+    fn along(view: &View<Si>, direction: &Direction<Si>) -> Sample<Dual> {
+        view.sample_along(direction)
+    }
+
+    fn from_now_on(view: &View<Si>, order: usize) -> Sample<TimeSeries> {
+        view.series(order)
+    }
+}
+
+const GUID: guid::Text = guid::of::<Si>();
+
+/// An instance of the actuator in SI units.
+pub type Instance = crate::slave::Instance<Si>;
+
+/// Value reference of a variable, by its name.
+#[must_use]
+pub fn value_reference(name: &str) -> Option<u32> {
+    variables::value_reference::<Si>(name)
+}

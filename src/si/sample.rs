@@ -1,0 +1,448 @@
+//! The quantities that follow from the state and the inputs by formulas, in SI units, each
+//! written once for plain numbers, for numbers that change in a direction, and for series in time.
+
+use super::Si;
+use super::scene::{BRANCHES, SiScene, SiState, internal};
+use crate::actuator::device::equation::Load;
+use crate::actuator::device::{Device, LocalDevice, Source};
+use crate::actuator::scales::{Scales, SiDevice};
+use crate::model::{Direction, Model, View};
+use crate::solver::coupled::{MOST_STATES, Stage};
+use crate::solver::double::Double;
+use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
+use crate::solver::number::Number;
+use crate::variables::{Access, Kind};
+
+macro_rules! sample {
+    ($($(#[$about:meta])* $name:ident,)*) => {
+        /// The actuator at one time, as numbers that may carry their derivatives along.
+        #[derive(Clone, Copy, Debug)]
+        pub struct Sample<N> {
+            $($(#[$about])* pub $name: N,)*
+        }
+
+        impl<N: Number> Sample<N> {
+            $($(#[$about])*
+            #[must_use]
+            pub fn $name(&self) -> N {
+                self.$name
+            })*
+        }
+
+        impl View<'_, Si> {
+            $($(#[$about])*
+            #[must_use]
+            pub fn $name(&self) -> f64 {
+                self.sample().$name
+            })*
+        }
+
+        impl Sample<f64> {
+            /// Σ weight · sample.
+            fn sum(parts: [(f64, Sample<f64>); 4]) -> Sample<f64> {
+                Sample { $($name: parts.iter().map(|(weight, part)| weight * part.$name).sum(),)* }
+            }
+        }
+
+        impl Sample<Dual> {
+            /// The sample with further slopes.
+            fn plus(&self, slope: &Sample<f64>) -> Sample<Dual> {
+                Sample { $($name: self.$name + Dual::new(0.0, slope.$name),)* }
+            }
+        }
+    };
+}
+
+sample! {
+    /// λ.
+    stretch,
+    /// dλ/dt in 1/s.
+    stretch_rate,
+    /// d²λ/dt² in 1/s².
+    stretch_acceleration,
+    /// λ3 = 1/λ².
+    thickness_stretch,
+    /// The distance of opposite edges in m.
+    edge_distance,
+    /// By how much it has grown, in m.
+    edge_displacement,
+    /// Its rate in m/s.
+    edge_velocity,
+    /// Its second derivative in m/s².
+    edge_acceleration,
+    /// The thickness of the stack in m.
+    thickness,
+    /// The charge on the electrodes in C.
+    charge,
+    /// The current from the source in A.
+    supply_current,
+    /// The capacitance in F.
+    capacitance,
+    /// The voltage at the membrane in V.
+    membrane_voltage,
+    /// The voltage at the terminals in V.
+    supply_voltage,
+    /// The true field in V/m.
+    electric_field,
+    /// The power that the source supplies in W.
+    electrical_power,
+    /// The power that the force supplies in W.
+    mechanical_power,
+    /// dQ/dt in A of the charge as a state; 0 where it is none.
+    charge_state_rate,
+    /// The charge as a state in C; what it was at the start where it is none.
+    charge_state,
+    /// ξ of the first dashpot.
+    dashpot_1,
+    /// ξ of the second dashpot.
+    dashpot_2,
+    /// ξ of the third dashpot.
+    dashpot_3,
+    /// dξ/dt of the first dashpot in 1/s.
+    dashpot_1_rate,
+    /// dξ/dt of the second dashpot in 1/s.
+    dashpot_2_rate,
+    /// dξ/dt of the third dashpot in 1/s.
+    dashpot_3_rate,
+}
+
+/// What a sample is computed with.
+pub(super) struct Basis {
+    pub described: SiDevice,
+    pub device: Device,
+    pub scales: Scales,
+    pub drive: crate::actuator::Drive,
+    /// Time of the model, nondimensional.
+    pub time: Double,
+    /// Where the stretch is counted from.
+    pub origin: Double,
+}
+
+impl Basis {
+    pub fn of(scene: &SiScene, time: &Double, origin: Double) -> Basis {
+        let described = scene.described();
+        let scales = Scales::of(&described);
+        Basis {
+            device: described.nondimensional(),
+            drive: scene.drive(&scales),
+            time: scales.time(*time),
+            described,
+            scales,
+            origin,
+        }
+    }
+
+    pub fn local(&self) -> LocalDevice<'_> {
+        LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
+    }
+
+    /// A state as a nondimensional stage, at this position from the origin.
+    pub fn stage(&self, state: &SiState, position: f64) -> Stage {
+        Stage {
+            position,
+            rate: state.motion.rate * self.scales.time.value(),
+            internal: internal(
+                &self.device,
+                state.charge / self.scales.charge,
+                &state.dashpots,
+            ),
+        }
+    }
+
+    /// The sample at a stage. `source_rate` is the derivative of what the source imposes;
+    /// `charging` that of the charge, where it is known better than by its equation; `states` the
+    /// charge and the dashpots, of which those count that are no states of the stage.
+    fn sample<N: Number>(
+        &self,
+        load: Load<N>,
+        source_rate: N,
+        stage: &Stage<N>,
+        charging: Option<N>,
+        (held, mut states): (bool, [N; 1 + BRANCHES]),
+    ) -> Sample<N> {
+        let (device, scales, local) = (&self.device, &self.scales, self.local());
+        let number = |value: f64| stage.position.same(value);
+        let per_second = number(1.0 / scales.time.value());
+        let stretch = local.stretch(stage.position);
+        let [force, inertia, damping] = local.forces(&load, stage);
+        let acceleration = if held {
+            number(0.0)
+        } else {
+            (force - damping * stage.rate) / inertia
+        };
+        let voltage = local.membrane_voltage(&load, stage);
+        let capacitance = local.capacitance(stretch);
+        let square = stretch * stretch;
+        let leak = voltage * local.conductance(voltage, square)[0];
+        let slopes = local.first_order(&load, stage);
+        let charge_slope = charging.unwrap_or(slopes[0].value);
+        let has_charge = device.has_charge_state();
+        let current = match device.port.source {
+            Source::Current => load.source,
+            Source::Charge => source_rate + leak,
+            Source::Voltage if has_charge => charge_slope + leak,
+            Source::Voltage => {
+                let growth = number(4.0) * device.permittivity.pull(stretch) * stage.rate;
+                capacitance * source_rate + voltage * growth + leak
+            }
+        };
+        let supply = match device.port.source {
+            Source::Voltage => load.source,
+            _ => voltage + number(device.port.resistance) * current,
+        };
+        let one = number(1.0);
+        let side = number(scales.length);
+        let stack = self.described.layers * self.described.thickness;
+        let rate = stage.rate * per_second;
+        let zero = number(0.0);
+        let mut rates = [zero; BRANCHES];
+        let mut next = usize::from(has_charge);
+        if has_charge {
+            states[0] = stage.internal[0] * number(scales.charge);
+        }
+        for (k, branch) in device.branches.iter().enumerate() {
+            if branch.modulus > 0.0 {
+                // ξ = √g.
+                let root = stage.internal[next].sqrt();
+                states[1 + k] = root;
+                if !held {
+                    rates[k] = slopes[next].value / (root + root) * per_second;
+                }
+                next += 1;
+            }
+        }
+        let current_unit = number(scales.current());
+        let volts = number(scales.voltage);
+        let supply_current = current * current_unit;
+        Sample {
+            stretch,
+            stretch_rate: rate,
+            stretch_acceleration: acceleration * per_second * per_second,
+            thickness_stretch: one / square,
+            edge_distance: stretch * side,
+            edge_displacement: (stretch - one) * side,
+            edge_velocity: rate * side,
+            edge_acceleration: acceleration * per_second * per_second * side,
+            thickness: number(stack) / square,
+            charge: voltage * capacitance * number(scales.charge),
+            supply_current,
+            capacitance: capacitance * number(scales.capacitance),
+            membrane_voltage: voltage * volts,
+            supply_voltage: supply * volts,
+            electric_field: voltage * square * number(scales.field),
+            electrical_power: supply * volts * supply_current,
+            mechanical_power: number(2.0 * scales.force) * load.prestress * rate * side,
+            charge_state_rate: if has_charge && !held {
+                charge_slope * current_unit
+            } else {
+                zero
+            },
+            charge_state: states[0],
+            dashpot_1: states[1],
+            dashpot_2: states[2],
+            dashpot_3: states[3],
+            dashpot_1_rate: rates[0],
+            dashpot_2_rate: rates[1],
+            dashpot_3_rate: rates[2],
+        }
+    }
+
+    fn load<N: Number>(&self, offset: N) -> Load<N> {
+        use crate::solver::coupled::LocalCoupledEquation;
+        self.local().load(offset)
+    }
+
+    fn source_rate(&self) -> f64 {
+        let drive = self.drive.at(&self.time);
+        drive.voltage(Dual::new(0.0, 1.0)).slope()
+    }
+}
+
+impl View<'_, Si> {
+    /// All quantities at the present.
+    #[must_use]
+    pub(super) fn sample(&self) -> Sample<f64> {
+        let (basis, stage) = self.basis();
+        let charging = self
+            .charging()
+            .map(|current| current / basis.scales.current());
+        let (load, rate) = (basis.load(0.0), basis.source_rate());
+        let states = own(&self.state());
+        basis.sample(load, rate, &stage, charging, (self.is_held(), states))
+    }
+
+    /// The present as it changes in a direction: exact for inputs and states; for parameters, on
+    /// which the units depend too, by central differences of fourth order.
+    pub(super) fn sample_along(&self, direction: &Direction<Si>) -> Sample<Dual> {
+        let (basis, stage) = self.basis();
+        let scales = &basis.scales;
+        let source = self.scene.source();
+        let change = direction.scene.sources[super::scene::place(source)];
+        let dual = |value: f64, slope: f64| Dual::new(value, slope);
+        let load = basis.load(0.0);
+        let time = scales.time.value();
+        let unit = scales.source(source);
+        let loaded = Load {
+            source: dual(load.source, change.at(0.0) / unit),
+            prestress: dual(load.prestress, direction.scene.force.at(0.0) / scales.force),
+        };
+        let slopes = self.state_slopes(&basis, &direction.state);
+        let held = self.is_held();
+        let moved = Stage {
+            position: dual(
+                stage.position,
+                if held {
+                    0.0
+                } else {
+                    direction.state.motion.position
+                },
+            ),
+            rate: dual(
+                stage.rate,
+                if held {
+                    0.0
+                } else {
+                    direction.state.motion.rate * time
+                },
+            ),
+            internal: std::array::from_fn(|k| dual(stage.internal[k], slopes[k])),
+        };
+        let rate = Dual::constant(basis.source_rate());
+        let [now, change] = [own(&self.state()), own(&direction.state)];
+        let states = std::array::from_fn(|k| dual(now[k], change[k]));
+        let sample = basis.sample(loaded, rate, &moved, None, (held, states));
+        match self.by_parameters(direction) {
+            Some(slope) => sample.plus(&slope),
+            None => sample,
+        }
+    }
+
+    /// The changes of the nondimensional first-order states.
+    fn state_slopes(&self, basis: &Basis, change: &SiState) -> [f64; MOST_STATES] {
+        let state = self.state();
+        let mut all = [0.0; MOST_STATES];
+        let mut next = 0;
+        if basis.device.has_charge_state() {
+            all[0] = change.charge / basis.scales.charge;
+            next = 1;
+        }
+        for k in 0..BRANCHES {
+            if basis.device.branches[k].modulus > 0.0 {
+                all[next] = 2.0 * state.dashpots[k] * change.dashpots[k];
+                next += 1;
+            }
+        }
+        all
+    }
+
+    /// How the quantities change with the parameters of a direction, if it has any.
+    fn by_parameters(&self, direction: &Direction<Si>) -> Option<Sample<f64>> {
+        let mut size = 0.0_f64;
+        let each = |visit: &mut dyn FnMut(fn(&SiScene) -> f64, fn(&mut SiScene, f64))| {
+            for variable in Si::VARIABLES {
+                if let (Access::Setting { get, set, .. }, Kind::Real { .. }) =
+                    (variable.access, variable.kind)
+                {
+                    visit(get, set);
+                }
+            }
+        };
+        each(&mut |get, _| {
+            let change = get(&direction.scene);
+            if change != 0.0 {
+                let value = get(self.scene).abs();
+                size = size.max(change.abs() / if value > 0.0 { value } else { 1.0 });
+            }
+        });
+        if size == 0.0 {
+            return None;
+        }
+        let step = 1e-3 / size;
+        let at = |steps: f64| {
+            let mut scene = self.scene.clone();
+            each(&mut |get, set| {
+                let change = get(&direction.scene);
+                if change != 0.0 {
+                    let value = get(&scene) + steps * step * change;
+                    set(&mut scene, value);
+                }
+            });
+            View::<Si> {
+                scene: &scene,
+                place: crate::model::Place::At {
+                    state: self.state(),
+                    record: super::SiRecord::default(),
+                },
+                ..*self
+            }
+            .sample()
+        };
+        let weight = |part: f64| part / (12.0 * step);
+        Some(Sample::sum([
+            (weight(1.0), at(-2.0)),
+            (weight(-8.0), at(-1.0)),
+            (weight(8.0), at(1.0)),
+            (weight(-1.0), at(2.0)),
+        ]))
+    }
+
+    /// The motion from now on as power series in the time in s, right up to the derivatives of
+    /// `order`.
+    pub(super) fn series(&self, order: usize) -> Sample<TimeSeries> {
+        let (basis, stage) = self.basis();
+        let local = basis.local();
+        // Of the nondimensional offset from now on; in seconds it runs by 1/t0.
+        let offset = TimeSeries::variable();
+        let load = basis.load(offset);
+        let mut series = Stage {
+            position: TimeSeries::constant(stage.position),
+            rate: TimeSeries::constant(stage.rate),
+            internal: stage.internal.map(TimeSeries::constant),
+        };
+        let held = self.is_held();
+        if !held {
+            series.position.term[1] = stage.rate;
+            for k in 0..=order.min(HIGHEST_ORDER) {
+                let slopes = local.first_order(&load, &series);
+                for (state, slope) in series.internal.iter_mut().zip(slopes) {
+                    state.term[k + 1] = slope.value.term[k] / (k + 1) as f64;
+                }
+                let [force, inertia, damping] = local.forces(&load, &series);
+                let acceleration = (force - damping * series.rate) / inertia;
+                series.rate.term[k + 1] = acceleration.term[k] / (k + 1) as f64;
+                series.position.term[k + 2] = series.rate.term[k + 1] / (k + 2) as f64;
+            }
+        }
+        let mut source_rate = TimeSeries::constant(0.0);
+        for k in 1..source_rate.term.len() {
+            source_rate.term[k - 1] = k as f64 * load.source.term[k];
+        }
+        let per_second = 1.0 / basis.scales.time.value();
+        let in_seconds = |series: TimeSeries| {
+            let mut factor = 1.0;
+            let mut scaled = series;
+            for term in &mut scaled.term {
+                *term *= factor;
+                factor *= per_second;
+            }
+            scaled
+        };
+        let load = Load {
+            source: in_seconds(load.source),
+            prestress: in_seconds(load.prestress),
+        };
+        let stage = Stage {
+            position: in_seconds(series.position),
+            rate: in_seconds(series.rate),
+            internal: series.internal.map(in_seconds),
+        };
+        let states = own(&self.state()).map(TimeSeries::constant);
+        basis.sample(load, in_seconds(source_rate), &stage, None, (held, states))
+    }
+}
+
+/// The charge and the dashpots of a state.
+fn own(state: &SiState) -> [f64; 1 + BRANCHES] {
+    let [first, second, third] = state.dashpots;
+    [state.charge, first, second, third]
+}

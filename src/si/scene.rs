@@ -1,0 +1,236 @@
+//! Everything that a host sets of the actuator in SI units.
+
+use serde::{Deserialize, Serialize};
+
+use crate::actuator::Drive;
+use crate::actuator::device::{Device, DeviceMotion, Source};
+use crate::actuator::drive::{Harmonic, Polynomial};
+use crate::actuator::scales::{Scales, SiDevice};
+use crate::model::AtLimit;
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::limits::Limits;
+
+/// Maxwell branches.
+pub const BRANCHES: usize = crate::actuator::device::parameters::MOST_BRANCHES;
+
+/// What happens where the true field reaches breakdown.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum OnBreakdown {
+    /// It is reported, and the motion goes on.
+    Flag,
+    /// The actuator stays where it is.
+    Hold,
+    /// The host is asked to end the simulation.
+    Terminate,
+}
+
+/// Position, rate and first-order states in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SiState {
+    /// λ and dλ/dt in 1/s.
+    pub motion: State,
+    /// The charge as a state, in C.
+    pub charge: f64,
+    /// ξ, the stretches of the dashpots.
+    pub dashpots: [f64; BRANCHES],
+}
+
+/// One scenario in SI units.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SiScene {
+    /// The actuator.
+    pub device: SiDevice,
+    /// J of the Gent law, 0 for none; κ2, κ3 of the Yeoh law, 0 for none.
+    pub stiffening: [f64; 3],
+    /// The state at the start time.
+    pub start: SiState,
+    /// The stretches between which the motion is followed.
+    pub limits: Limits,
+    /// What happens at them.
+    pub on_pull_in: AtLimit,
+    /// What happens at breakdown.
+    pub on_breakdown: OnBreakdown,
+    /// Whether extremes are recorded, and the number of their window.
+    pub record_extremes: bool,
+    /// A changed number starts them anew.
+    pub extremes_window: f64,
+    /// Whether energies supplied and lost are summed up.
+    pub record_energy: bool,
+    /// What the source imposes, for hosts that set numbers only: 0 leaves it to the enumeration,
+    /// 1, 2, 3 are voltage, current, charge.
+    pub source_number: f64,
+    /// Time in s at which the inputs were set.
+    pub since: Double,
+    /// Voltage in V, current in A, charge in C, of which the source imposes one.
+    pub sources: [Polynomial; 3],
+    /// The force on each pair of opposite edges, in N.
+    pub force: Polynomial,
+    /// Amplitude in V, frequency in Hz and phase in rad of the built-in alternating voltage.
+    pub alternating: [f64; 3],
+}
+
+impl SiScene {
+    /// A scene with every number 0, to be filled in.
+    pub(super) const BLANK: SiScene = SiScene {
+        device: SiDevice {
+            layers: 0.0,
+            surfaces: 0.0,
+            load_spring_length: 0.0,
+            branch_times: [0.0; BRANCHES],
+            branch_limits: [0.0; BRANCHES],
+            conduction_field: 0.0,
+            breakdown_field: 0.0,
+            ..SiDevice::sheet(0.0, 0.0, 0.0, [0.0; 2])
+        },
+        stiffening: [0.0; 3],
+        start: SiState {
+            motion: State {
+                position: 0.0,
+                rate: 0.0,
+            },
+            charge: 0.0,
+            dashpots: [0.0; BRANCHES],
+        },
+        limits: Limits {
+            lower: 0.0,
+            upper: 0.0,
+        },
+        on_pull_in: AtLimit::Hold,
+        on_breakdown: OnBreakdown::Flag,
+        record_extremes: false,
+        extremes_window: 0.0,
+        record_energy: false,
+        source_number: 0.0,
+        since: Double::ZERO,
+        sources: [Polynomial::constant(0.0); 3],
+        force: Polynomial::constant(0.0),
+        alternating: [0.0; 3],
+    };
+
+    /// What the source imposes.
+    #[must_use]
+    pub fn source(&self) -> Source {
+        match self.source_number {
+            1.0 => Source::Voltage,
+            2.0 => Source::Current,
+            3.0 => Source::Charge,
+            _ => self.device.source,
+        }
+    }
+
+    /// The input that is in use.
+    #[must_use]
+    pub fn source_input(&self) -> &Polynomial {
+        &self.sources[place(self.source())]
+    }
+
+    /// The actuator as it is described, what is given as 0 for "none" left out.
+    #[must_use]
+    pub fn described(&self) -> SiDevice {
+        use crate::actuator::scales::SiElasticity;
+        let [limit, second, third] = self.stiffening;
+        let none = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
+        let mut device = self.device;
+        device.source = self.source();
+        device.elasticity = if limit > 0.0 {
+            SiElasticity::Gent { limit }
+        } else if second != 0.0 || third != 0.0 {
+            SiElasticity::Yeoh { second, third }
+        } else {
+            SiElasticity::NeoHookean
+        };
+        if device.load_spring_length == 0.0 {
+            device.load_spring_length = device.side;
+        }
+        device.branch_limits = device.branch_limits.map(none);
+        device.conduction_field = none(device.conduction_field);
+        device.breakdown_field = none(device.breakdown_field);
+        device
+    }
+
+    /// The units of its nondimensional numbers.
+    #[must_use]
+    pub fn scales(&self) -> Scales {
+        Scales::of(&self.described())
+    }
+
+    /// Its inputs in nondimensional numbers.
+    #[must_use]
+    pub fn drive(&self, scales: &Scales) -> Drive {
+        let source = self.source();
+        let unit = scales.source(source);
+        let [amplitude, frequency, phase] = self.alternating;
+        let alternates = source == Source::Voltage && amplitude != 0.0;
+        let time = scales.time.value();
+        let mut drive = Drive::constant(0.0, 0.0);
+        drive.since = scales.time(self.since);
+        drive.voltage = self.source_input().scaled(1.0 / unit, time);
+        drive.prestress = self.force.scaled(1.0 / scales.force, time);
+        if alternates {
+            drive.harmonic = Harmonic {
+                amplitude: amplitude / unit,
+                frequency: std::f64::consts::TAU * frequency * time,
+                phase,
+            };
+        }
+        drive
+    }
+
+    /// Its motion in nondimensional numbers.
+    #[must_use]
+    pub fn motion(&self) -> DeviceMotion {
+        let described = self.described();
+        DeviceMotion {
+            device: described.nondimensional(),
+            drive: self.drive(&Scales::of(&described)),
+            records_energy: self.record_energy,
+        }
+    }
+
+    /// Whether extremes are recorded.
+    #[must_use]
+    pub fn records_extremes(&self) -> bool {
+        self.record_extremes || self.extremes_window != 0.0
+    }
+
+    /// Whether what drives the motion depends on time.
+    #[must_use]
+    pub fn depends_on_time(&self) -> bool {
+        let [amplitude, frequency, _] = self.alternating;
+        !(self.source_input().is_constant() && self.force.is_constant())
+            || amplitude != 0.0 && frequency != 0.0
+    }
+}
+
+/// The place of a source among the inputs.
+pub(super) fn place(source: Source) -> usize {
+    match source {
+        Source::Voltage => 0,
+        Source::Current => 1,
+        Source::Charge => 2,
+    }
+}
+
+/// The nondimensional first-order states of a device, from the charge and the dashpots.
+pub(super) fn internal(
+    device: &Device,
+    charge: f64,
+    dashpots: &[f64; BRANCHES],
+) -> [f64; crate::solver::coupled::MOST_STATES] {
+    let mut all = [0.0; crate::solver::coupled::MOST_STATES];
+    let mut places = all.iter_mut();
+    if device.has_charge_state()
+        && let Some(place) = places.next()
+    {
+        *place = charge;
+    }
+    for (branch, dashpot) in device.branches.iter().zip(dashpots) {
+        if branch.modulus > 0.0
+            && let Some(place) = places.next()
+        {
+            *place = dashpot * dashpot;
+        }
+    }
+    all
+}

@@ -1,0 +1,5 @@
+//! The actuator in SI units as a host sees it, without the C functions.
+
+mod host;
+mod motion;
+mod refusals;
