@@ -5,6 +5,7 @@ use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::nondimensional::{
     ALIASES, Nondimensional, VARIABLES, value_reference,
 };
+use dielectric_elastomer_actuator::si::Si;
 use dielectric_elastomer_actuator::variables::{Causality, Kind, Variability, Variable};
 use fmi::fmi2::schema::Fmi2ModelDescription;
 
@@ -15,11 +16,18 @@ fn checked_in(path: &str) -> String {
 
 #[test]
 fn the_checked_in_description_is_the_generated_one() {
-    assert!(
-        checked_in("modelDescription/DielectricElastomerActuator.xml")
-            == description::xml::<Nondimensional>(),
-        "modelDescription.xml differs from the table; run `cargo fmu describe`"
-    );
+    for (identifier, text) in [
+        (
+            Nondimensional::IDENTIFIER,
+            description::xml::<Nondimensional>(),
+        ),
+        (Si::IDENTIFIER, description::xml::<Si>()),
+    ] {
+        assert!(
+            checked_in(&format!("modelDescription/{identifier}.xml")) == text,
+            "{identifier}.xml differs from the table; run `cargo fmu describe`"
+        );
+    }
 }
 
 /// Read back by the reader of the crate `fmi`, which knows nothing of our writer.
@@ -41,6 +49,31 @@ fn an_independent_reader_finds_every_variable() {
         assert_eq!(
             value_reference(&variable.name),
             Some(variable.value_reference)
+        );
+    }
+}
+
+/// That of the actuator in SI units: every variable, and the unit of each that has one.
+#[test]
+fn an_independent_reader_finds_every_variable_in_si_units() {
+    let text = description::xml::<Si>();
+    let read: Fmi2ModelDescription = fmi::schema::deserialize(&text).expect("a valid description");
+    assert_eq!(read.guid, Si::GUID);
+    let names: Vec<&str> = read
+        .model_variables
+        .variables
+        .iter()
+        .map(|v| v.name.as_str())
+        .collect();
+    let ours: Vec<&str> = Si::VARIABLES.iter().map(|v| v.name).collect();
+    assert_eq!(names, ours);
+    for variable in Si::VARIABLES {
+        let unit = format!("<Unit name=\"{}\">", variable.unit.name);
+        assert!(
+            text.contains(&unit),
+            "{} of {}",
+            variable.unit.name,
+            variable.name
         );
     }
 }

@@ -25,7 +25,6 @@ use dielectric_elastomer_actuator::abi::EXPORTED_NAMES;
 use dielectric_elastomer_actuator::description;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::nondimensional::Nondimensional;
-use dielectric_elastomer_actuator::si::Si;
 
 use archive::Entries;
 use inspect::Binary;
@@ -56,7 +55,7 @@ impl Fmu {
 }
 
 /// Every FMU that is shipped.
-const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>(), Fmu::of::<Si>()];
+const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>()];
 
 /// Build, check and pack the FMU
 #[derive(Parser)]

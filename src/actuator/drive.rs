@@ -52,19 +52,6 @@ impl Polynomial {
         self.term[order] = value / factorial;
     }
 
-    /// The same function in other units: the value times `value`, of a time that is counted in
-    /// units of `time`.
-    #[must_use]
-    pub fn scaled(&self, value: f64, time: f64) -> Polynomial {
-        let mut factor = value;
-        let term = self.term.map(|term| {
-            let scaled = term * factor;
-            factor *= time;
-            scaled
-        });
-        Polynomial { term }
-    }
-
     /// Whether it is a polynomial in finite numbers.
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -1,6 +1,7 @@
 //! The real actuator in SI units as a [`Model`]: its table of variables and the physics behind
 //! it. The nondimensional core is the one model; `actuator::scales` is the only place with units.
 
+mod along;
 mod motion;
 mod record;
 mod sample;

@@ -6,12 +6,11 @@ use super::scene::{BRANCHES, SiScene, SiState, internal};
 use crate::actuator::device::equation::Load;
 use crate::actuator::device::{Device, LocalDevice, Source};
 use crate::actuator::scales::{Scales, SiDevice};
-use crate::model::{Direction, Model, View};
-use crate::solver::coupled::{MOST_STATES, Stage};
+use crate::model::View;
+use crate::solver::coupled::Stage;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::number::Number;
-use crate::variables::{Access, Kind};
 
 macro_rules! sample {
     ($($(#[$about:meta])* $name:ident,)*) => {
@@ -39,14 +38,14 @@ macro_rules! sample {
 
         impl Sample<f64> {
             /// Σ weight · sample.
-            fn sum(parts: [(f64, Sample<f64>); 4]) -> Sample<f64> {
+            pub(super) fn sum(parts: [(f64, Sample<f64>); 4]) -> Sample<f64> {
                 Sample { $($name: parts.iter().map(|(weight, part)| weight * part.$name).sum(),)* }
             }
         }
 
         impl Sample<Dual> {
             /// The sample with further slopes.
-            fn plus(&self, slope: &Sample<f64>) -> Sample<Dual> {
+            pub(super) fn plus(&self, slope: &Sample<f64>) -> Sample<Dual> {
                 Sample { $($name: self.$name + Dual::new(0.0, slope.$name),)* }
             }
         }
@@ -152,7 +151,7 @@ impl Basis {
     /// The sample at a stage. `source_rate` is the derivative of what the source imposes;
     /// `charging` that of the charge, where it is known better than by its equation; `states` the
     /// charge and the dashpots, of which those count that are no states of the stage.
-    fn sample<N: Number>(
+    pub fn sample<N: Number>(
         &self,
         load: Load<N>,
         source_rate: N,
@@ -247,12 +246,12 @@ impl Basis {
         }
     }
 
-    fn load<N: Number>(&self, offset: N) -> Load<N> {
+    pub fn load<N: Number>(&self, offset: N) -> Load<N> {
         use crate::solver::coupled::LocalCoupledEquation;
         self.local().load(offset)
     }
 
-    fn source_rate(&self) -> f64 {
+    pub fn source_rate(&self) -> f64 {
         let drive = self.drive.at(&self.time);
         drive.voltage(Dual::new(0.0, 1.0)).slope()
     }
@@ -269,121 +268,6 @@ impl View<'_, Si> {
         let (load, rate) = (basis.load(0.0), basis.source_rate());
         let states = own(&self.state());
         basis.sample(load, rate, &stage, charging, (self.is_held(), states))
-    }
-
-    /// The present as it changes in a direction: exact for inputs and states; for parameters, on
-    /// which the units depend too, by central differences of fourth order.
-    pub(super) fn sample_along(&self, direction: &Direction<Si>) -> Sample<Dual> {
-        let (basis, stage) = self.basis();
-        let scales = &basis.scales;
-        let source = self.scene.source();
-        let change = direction.scene.sources[super::scene::place(source)];
-        let dual = |value: f64, slope: f64| Dual::new(value, slope);
-        let load = basis.load(0.0);
-        let time = scales.time.value();
-        let unit = scales.source(source);
-        let loaded = Load {
-            source: dual(load.source, change.at(0.0) / unit),
-            prestress: dual(load.prestress, direction.scene.force.at(0.0) / scales.force),
-        };
-        let slopes = self.state_slopes(&basis, &direction.state);
-        let held = self.is_held();
-        let moved = Stage {
-            position: dual(
-                stage.position,
-                if held {
-                    0.0
-                } else {
-                    direction.state.motion.position
-                },
-            ),
-            rate: dual(
-                stage.rate,
-                if held {
-                    0.0
-                } else {
-                    direction.state.motion.rate * time
-                },
-            ),
-            internal: std::array::from_fn(|k| dual(stage.internal[k], slopes[k])),
-        };
-        let rate = Dual::constant(basis.source_rate());
-        let [now, change] = [own(&self.state()), own(&direction.state)];
-        let states = std::array::from_fn(|k| dual(now[k], change[k]));
-        let sample = basis.sample(loaded, rate, &moved, None, (held, states));
-        match self.by_parameters(direction) {
-            Some(slope) => sample.plus(&slope),
-            None => sample,
-        }
-    }
-
-    /// The changes of the nondimensional first-order states.
-    fn state_slopes(&self, basis: &Basis, change: &SiState) -> [f64; MOST_STATES] {
-        let state = self.state();
-        let mut all = [0.0; MOST_STATES];
-        let mut next = 0;
-        if basis.device.has_charge_state() {
-            all[0] = change.charge / basis.scales.charge;
-            next = 1;
-        }
-        for k in 0..BRANCHES {
-            if basis.device.branches[k].modulus > 0.0 {
-                all[next] = 2.0 * state.dashpots[k] * change.dashpots[k];
-                next += 1;
-            }
-        }
-        all
-    }
-
-    /// How the quantities change with the parameters of a direction, if it has any.
-    fn by_parameters(&self, direction: &Direction<Si>) -> Option<Sample<f64>> {
-        let mut size = 0.0_f64;
-        let each = |visit: &mut dyn FnMut(fn(&SiScene) -> f64, fn(&mut SiScene, f64))| {
-            for variable in Si::VARIABLES {
-                if let (Access::Setting { get, set, .. }, Kind::Real { .. }) =
-                    (variable.access, variable.kind)
-                {
-                    visit(get, set);
-                }
-            }
-        };
-        each(&mut |get, _| {
-            let change = get(&direction.scene);
-            if change != 0.0 {
-                let value = get(self.scene).abs();
-                size = size.max(change.abs() / if value > 0.0 { value } else { 1.0 });
-            }
-        });
-        if size == 0.0 {
-            return None;
-        }
-        let step = 1e-3 / size;
-        let at = |steps: f64| {
-            let mut scene = self.scene.clone();
-            each(&mut |get, set| {
-                let change = get(&direction.scene);
-                if change != 0.0 {
-                    let value = get(&scene) + steps * step * change;
-                    set(&mut scene, value);
-                }
-            });
-            View::<Si> {
-                scene: &scene,
-                place: crate::model::Place::At {
-                    state: self.state(),
-                    record: super::SiRecord::default(),
-                },
-                ..*self
-            }
-            .sample()
-        };
-        let weight = |part: f64| part / (12.0 * step);
-        Some(Sample::sum([
-            (weight(1.0), at(-2.0)),
-            (weight(-8.0), at(-1.0)),
-            (weight(8.0), at(1.0)),
-            (weight(-1.0), at(2.0)),
-        ]))
     }
 
     /// The motion from now on as power series in the time in s, right up to the derivatives of
@@ -442,7 +326,7 @@ impl View<'_, Si> {
 }
 
 /// The charge and the dashpots of a state.
-fn own(state: &SiState) -> [f64; 1 + BRANCHES] {
+pub(super) fn own(state: &SiState) -> [f64; 1 + BRANCHES] {
     let [first, second, third] = state.dashpots;
     [state.charge, first, second, third]
 }

@@ -4,11 +4,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
-use crate::actuator::drive::{Harmonic, Polynomial};
+use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial};
 use crate::actuator::scales::{Scales, SiDevice};
 use crate::model::AtLimit;
 use crate::solver::State;
 use crate::solver::double::Double;
+use crate::solver::jet::Jet;
 use crate::solver::limits::Limits;
 
 /// Maxwell branches.
@@ -165,8 +166,8 @@ impl SiScene {
         let time = scales.time.value();
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = scales.time(self.since);
-        drive.voltage = self.source_input().scaled(1.0 / unit, time);
-        drive.prestress = self.force.scaled(1.0 / scales.force, time);
+        drive.voltage = scaled(self.source_input(), 1.0 / unit, time);
+        drive.prestress = scaled(&self.force, 1.0 / scales.force, time);
         if alternates {
             drive.harmonic = Harmonic {
                 amplitude: amplitude / unit,
@@ -201,6 +202,20 @@ impl SiScene {
         !(self.source_input().is_constant() && self.force.is_constant())
             || amplitude != 0.0 && frequency != 0.0
     }
+}
+
+/// An input in other units: its value times `value`, of a time counted in units of `time`.
+fn scaled(input: &Polynomial, value: f64, time: f64) -> Polynomial {
+    let mut offset = Jet::<{ HIGHEST_DERIVATIVE + 1 }>::constant(0.0);
+    offset.term[1] = time;
+    let series = input.at(offset);
+    let mut scaled = Polynomial::constant(value * series.term[0]);
+    let mut factorial = 1.0;
+    for (order, term) in series.term.into_iter().enumerate().skip(1) {
+        factorial *= order as f64;
+        scaled.set_derivative(order, factorial * value * term);
+    }
+    scaled
 }
 
 /// The place of a source among the inputs.

@@ -376,3 +376,59 @@ fn output_derivatives_are_those_of_the_motion() {
         }
     }
 }
+
+/// The same trajectory from both models after scaling, to rounding: alternating voltage, force
+/// and a start in motion. Only what the scales themselves are rounded to differs.
+#[test]
+fn si_units_and_nondimensional_numbers_give_the_same_motion() {
+    use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
+    use dielectric_elastomer_actuator::nondimensional;
+    use dielectric_elastomer_actuator::slave::Type;
+
+    let scales = Scales::of(&SiDevice::sheet(303e3, 1100.0, 2.8, [10e-6, 100e-6]));
+    let (time, volts, newtons) = (scales.time.value(), scales.voltage, scales.force);
+    let mut si = Host::begun(&[
+        ("voltage", 0.4 * volts),
+        ("V_ac", 0.2 * volts),
+        ("f_ac", 0.1471 / (std::f64::consts::TAU * time)),
+        ("force", 0.05 * newtons),
+        ("lambda_dot_start", 0.01 / time),
+    ]);
+    let surface = 303e3 * 10e-6;
+    let mut plain = nondimensional::Instance::new();
+    plain
+        .setup_experiment(None, 0.0, None)
+        .expect("an experiment");
+    plain.enter_initialization();
+    let reference = |name: &str| nondimensional::value_reference(name).expect(name);
+    for (name, value) in [
+        ("phi", 0.4),
+        ("phi_ac", 0.2),
+        ("omega_ac", 0.1471),
+        ("S", 0.05),
+        ("lambda_dot_start", 0.01),
+        ("gamma_s", 0.02 / surface),
+        ("tau_s", 0.02 / surface),
+        ("E_s", 0.126 / surface),
+    ] {
+        plain
+            .set(Type::Real, &[reference(name)], |_| value)
+            .expect(name);
+    }
+    plain.exit_initialization().expect("a start");
+    for k in 0..400 {
+        plain.do_step(0.37 * f64::from(k), 0.37).expect("a step");
+        si.step(0.37 * time);
+        let mut theirs = [0.0; 2];
+        let references = ["lambda", "lambda_dot"].map(reference);
+        plain
+            .get(Type::Real, &references, |place, value| {
+                theirs[place] = value
+            })
+            .expect("values");
+        let ours = [si.get("lambda"), si.get("lambda_dot") * time];
+        for (ours, theirs) in ours.into_iter().zip(theirs) {
+            assert!((ours - theirs).abs() < 2e-12, "step {k}: {ours} {theirs}");
+        }
+    }
+}

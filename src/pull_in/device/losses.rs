@@ -9,7 +9,8 @@
 //! 2Sλ, never grows. Once it is below its value at the saddle, the motion cannot pass any more,
 //! and the side on which it is decides.
 
-use super::{Curves, Point, RELAXED, bisect};
+use super::search::bisect;
+use super::{Curves, Point, RELAXED};
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Port};
 use crate::solver::State;
