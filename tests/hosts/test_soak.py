@@ -10,6 +10,7 @@ import fmpy
 import pytest
 
 TIMES = 10 if os.environ.get("SOAK") == "long" else 1
+KNOWN = f"--suppressions={Path(__file__).with_name('races.supp')}"
 
 
 @pytest.fixture(scope="session")
@@ -45,10 +46,12 @@ def test_memory_stays_flat(host, what, count):
     ("tool", "what", "count"),
     [
         (["memcheck", "--leak-check=full", "--errors-for-leak-kinds=definite,indirect,possible"], "scenes", 2),
-        (["helgrind"], "threads", 8),
-        (["drd"], "threads", 8),
+        (["helgrind", KNOWN], "threads", 8),
+        (["drd", KNOWN], "threads", 8),
+        (["helgrind"], "later", 4),
+        (["drd"], "later", 4),
     ],
-    ids=["memory", "races", "races-drd"],
+    ids=["memory", "races", "races-drd", "races-later", "races-later-drd"],
 )
 def test_valgrind_finds_nothing(host, tool, what, count):
     if shutil.which("valgrind") is None:
