@@ -64,6 +64,7 @@ impl Scene {
 
     /// What happens at a limit, whichever way the host has said it.
     #[must_use]
+    #[inline]
     pub fn at_limit(&self) -> AtLimit {
         if self.terminate_on_pull_in == 0.0 {
             self.on_pull_in
@@ -74,6 +75,7 @@ impl Scene {
 
     /// Whether extremes are recorded, whichever way the host has said it.
     #[must_use]
+    #[inline]
     pub fn records_extremes(&self) -> bool {
         self.record_extremes || self.extremes_window != 0.0
     }
@@ -99,11 +101,13 @@ impl Equation for Scene {
         LocalMotion::new(Coefficients::fold(&self.parameters), &self.drive, time)
     }
 
+    #[inline]
     fn is_autonomous(&self) -> bool {
         self.drive.is_constant()
     }
 
     /// Eq. 16 is that of a Hamiltonian (Eq. 18), with x' in it squared.
+    #[inline]
     fn is_time_reversible(&self) -> bool {
         true
     }

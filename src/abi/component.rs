@@ -123,11 +123,9 @@ impl Host {
     }
 }
 
-/// Runs `body` in the default floating-point environment, the host's put back
-/// after it; a panic in it becomes a fatal fault, and goes no further.
+/// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
 #[inline(always)]
 fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
-    let _environment = FloatEnvironment::entered();
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
         Err(Fault {
             severity: Severity::Fatal,
@@ -137,13 +135,20 @@ fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
     })
 }
 
+/// Runs `body` in the default floating-point environment, the host's put back after it.
+#[inline(always)]
+fn computing<T>(body: impl FnOnce() -> T) -> T {
+    let _environment = FloatEnvironment::entered();
+    body()
+}
+
 /// The component of an instance that `make` makes, or null: the one way into an
 /// instance's life. No panic leaves it.
 pub fn instantiated<M: Model>(
     host: Host,
     make: impl FnOnce() -> Result<Instance<M>, Fault>,
 ) -> fmi2Component {
-    match contained(make) {
+    match contained(|| computing(make)) {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
         Err(fault) => {
             host.refuse("fmi2Instantiate", fault);
@@ -163,10 +168,25 @@ pub fn free<T>(owned: Box<T>) {
 
 /// Runs `body` on the component behind the pointer, if the phase permits the
 /// call: the one way from C into the slave. No panic leaves it.
+#[inline(always)]
 pub fn guarded<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
+    body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
+) -> fmi2Status {
+    guarded_but_for(component, function, call, |_| Ok(false), body)
+}
+
+/// The same, where `at_once` may have done the call without any arithmetic: it compares and
+/// copies only, and runs in the host's floating-point environment, which costs more to find out
+/// than such a call takes. It returns whether it has done it; if not, it has changed nothing.
+#[inline(always)]
+pub fn guarded_but_for<M: Model>(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
+    at_once: impl FnOnce(&mut Component<M>) -> Result<bool, Fault>,
     body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
 ) -> fmi2Status {
     // SAFETY: a component that is not null comes from `fmi2Instantiate`, was
@@ -178,7 +198,13 @@ pub fn guarded<M: Model>(
     if let Err(fault) = component.instance.check(call) {
         return component.host.refuse(function, fault);
     }
-    match contained(|| body(component)) {
+    let outcome = contained(|| {
+        if at_once(component)? {
+            return Ok(None);
+        }
+        computing(|| body(component))
+    });
+    match outcome {
         Ok(None) => fmi2Status_fmi2OK,
         Ok(Some(event)) => component.host.announce(function, event),
         Err(fault) => {

@@ -21,7 +21,7 @@ mod component;
 mod envelope;
 mod exchange;
 mod export;
-mod float_environment;
+pub mod float_environment;
 mod pointers;
 mod state;
 mod stepping;
@@ -33,7 +33,7 @@ use libc::c_char;
 
 use crate::model::Model;
 use crate::slave::{Call, Fault, Instance, Interface, Type};
-use component::{Component, Host, free, guarded, instantiated};
+use component::{Component, Host, free, guarded, guarded_but_for, instantiated};
 pub use exchange::*;
 pub use export::EXPORTED_NAMES;
 use pointers::{slice, slice_mut, text};
@@ -225,17 +225,28 @@ macro_rules! setter {
             nvr: usize,
             value: *const $value,
         ) -> fmi2Status {
-            guarded::<M>(c, stringify!($function), Call::Set, |component| {
+            let convert: fn($value) -> f64 = $convert;
+            let given = || {
                 // SAFETY: see the head of this file.
                 let references = unsafe { slice(vr, nvr, "vr") }?;
                 // SAFETY: see the head of this file.
                 let values = unsafe { slice(value, nvr, "value") }?;
-                let convert: fn($value) -> f64 = $convert;
-                component
-                    .instance
-                    .set($type, references, |place| convert(values[place]))?;
-                Ok(None)
-            })
+                Ok::<_, Fault>((references, move |place: usize| convert(values[place])))
+            };
+            guarded_but_for::<M>(
+                c,
+                stringify!($function),
+                Call::Set,
+                |component| {
+                    let (references, value) = given()?;
+                    Ok(component.instance.set_held($type, references, value))
+                },
+                |component| {
+                    let (references, value) = given()?;
+                    component.instance.set($type, references, value)?;
+                    Ok(None)
+                },
+            )
         }
     };
 }

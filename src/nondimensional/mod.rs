@@ -59,6 +59,11 @@ impl Model for Nondimensional {
         scene.drive.is_finite()
     }
 
+    #[inline]
+    fn inputs_are_held(scene: &Scene) -> bool {
+        scene.drive.inputs_are_constant()
+    }
+
     fn check_start(scene: &Scene) -> Result<(), String> {
         let start = scene.start.position;
         let limits = scene.limits;
@@ -74,6 +79,7 @@ impl Model for Nondimensional {
         ))
     }
 
+    #[inline]
     fn start(scene: &Scene) -> State {
         scene.start
     }
@@ -83,14 +89,17 @@ impl Model for Nondimensional {
         scene.drive.rebase(time);
     }
 
+    #[inline]
     fn begin_inputs(scene: &mut Scene, time: Double) {
         scene.drive.since = time;
     }
 
+    #[inline]
     fn inputs_since(scene: &Scene) -> &Double {
         &scene.drive.since
     }
 
+    #[inline]
     fn at_limit(scene: &Scene, _limit: Limit) -> AtLimit {
         scene.at_limit()
     }
@@ -150,6 +159,7 @@ impl Model for Nondimensional {
             .nth(place)
     }
 
+    #[inline]
     fn window(scene: &Scene) -> f64 {
         scene.extremes_window
     }

@@ -314,10 +314,17 @@ impl<M: Model> Instance<M> {
 
     /// Counts the time of the drive from the present communication point on.
     fn bring_drive_up_to_date(&mut self) {
+        if let Some(time) = self.now() {
+            M::rebase_inputs(&mut self.scene, time);
+        }
+    }
+
+    /// The present communication point; none before the motion has begun.
+    fn now(&self) -> Option<Double> {
         match &self.course {
-            Course::Ahead => {}
-            Course::Run(run) => M::rebase_inputs(&mut self.scene, *run.motion().time()),
-            Course::Exchange(now) => M::rebase_inputs(&mut self.scene, now.time),
+            Course::Ahead => None,
+            Course::Run(run) => Some(*run.motion().time()),
+            Course::Exchange(now) => Some(now.time),
         }
     }
 

@@ -86,6 +86,7 @@ pub enum Call {
 impl Call {
     /// Whether an instance of this kind of FMU has such a call.
     #[must_use]
+    #[inline]
     pub fn is_part_of(self, interface: Interface) -> bool {
         match self {
             Call::SetInputDerivatives
@@ -107,6 +108,7 @@ impl Call {
 impl Phase {
     /// Whether `call` is allowed in this phase.
     #[must_use]
+    #[inline]
     pub fn permits(self, call: Call) -> bool {
         use Phase::{
             ContinuousTime, EventMode, Fatal, Initialization, Instantiated, StepComplete,
@@ -147,6 +149,7 @@ impl Phase {
 
     /// Whether initialization has ended.
     #[must_use]
+    #[inline]
     pub fn has_begun(self) -> bool {
         !matches!(self, Phase::Instantiated | Phase::Initialization)
     }

@@ -124,6 +124,49 @@ impl<M: Model> Instance<M> {
         Err(Fault::discard(format!("{why}; try a shorter step")))
     }
 
+    /// Sets inputs, where all of them keep their values between communication points. Only
+    /// compares and copies: no arithmetic is done, and no floating-point comparison. Returns
+    /// whether they have been set; if not, nothing has changed, and [`Instance::set`] is to be
+    /// called.
+    #[inline]
+    pub fn set_held(
+        &mut self,
+        wanted: Type,
+        references: &[u32],
+        value: impl Fn(usize) -> f64,
+    ) -> bool {
+        if !M::inputs_are_held(&self.scene) {
+            return false;
+        }
+        for (place, &reference) in references.iter().enumerate() {
+            let may_be_set = M::VARIABLES
+                .get(reference as usize)
+                .is_some_and(|variable| {
+                    variable.is_input() && wanted.is_of(variable) && variable.contains(value(place))
+                });
+            if !may_be_set {
+                return false;
+            }
+        }
+        if let Some(time) = self.now() {
+            M::begin_inputs(&mut self.scene, time);
+        }
+        let mut changed = false;
+        for (place, &reference) in references.iter().enumerate() {
+            if let Access::Input { of, .. } = M::VARIABLES[reference as usize].access {
+                let (input, value) = (of(&mut self.scene), value(place));
+                if input.value().to_bits() != value.to_bits() {
+                    *input = Polynomial::constant(value);
+                    changed = true;
+                }
+            }
+        }
+        if changed {
+            self.changed();
+        }
+        true
+    }
+
     /// Sets the variables of type `wanted` with these value references. In model
     /// exchange the states are among them, between the end of initialization and
     /// that of the simulation: as `set_continuous_states` does.

@@ -35,6 +35,7 @@ impl Double {
 
     /// The number `value`, exactly.
     #[must_use]
+    #[inline]
     pub const fn new(value: f64) -> Double {
         Double {
             high: value,
@@ -44,6 +45,7 @@ impl Double {
 
     /// `self + other`.
     #[must_use]
+    #[inline]
     pub const fn add(self, other: Double) -> Double {
         // A branch is foreseen; the chain of sums below would be waited for.
         if other.high == 0.0 && other.low == 0.0 {
@@ -59,6 +61,7 @@ impl Double {
     /// `self + addend`, for a clock: each sum waits for a single operation of the last one.
     /// What the roundings lose adds up in `low`; see [`Double::tightened`].
     #[must_use]
+    #[inline]
     pub const fn plus(self, addend: f64) -> Double {
         let sum = exact_sum(self.high, addend);
         Double {
@@ -70,12 +73,14 @@ impl Double {
     /// Renormalizes: moves as much as possible into `high` and keeps the value. After thousands of
     /// [`Double::plus`] the roundings of a grown `low` might be seen.
     #[must_use]
+    #[inline]
     pub const fn tightened(self) -> Double {
         exact_sum(self.high, self.low)
     }
 
     /// `self − other`, rounded to `f64`: accurate also where the two are close.
     #[must_use]
+    #[inline]
     pub const fn since(self, other: Double) -> f64 {
         // One after the other: two differences at a time would be taken from one load, which
         // waits long for numbers that have just been put down one by one.
@@ -84,6 +89,7 @@ impl Double {
 
     /// `self − other`.
     #[must_use]
+    #[inline]
     pub const fn sub(self, other: Double) -> Double {
         self.add(Double {
             high: -other.high,
@@ -125,12 +131,14 @@ impl Double {
 
     /// The number rounded to `f64`.
     #[must_use]
+    #[inline]
     pub const fn value(self) -> f64 {
         self.high + self.low
     }
 }
 
 /// `a + b` without error (Knuth).
+#[inline]
 const fn exact_sum(a: f64, b: f64) -> Double {
     let high = a + b;
     let shadow = high - a;

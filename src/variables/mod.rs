@@ -236,6 +236,19 @@ impl<M: Model> Variable<M> {
         matches!(self.access, Access::Input { .. })
     }
 
+    /// Whether `value` lies between the limits of a real variable. Compares bits: the
+    /// floating-point environment is neither asked nor changed.
+    #[must_use]
+    #[inline]
+    pub fn contains(&self, value: f64) -> bool {
+        match &self.kind {
+            Kind::Real { min, max, .. } => {
+                min.total_cmp(&value).is_le() && value.total_cmp(max).is_le()
+            }
+            _ => false,
+        }
+    }
+
     /// Why `value` may not be set, in words, if it may not.
     ///
     /// # Errors

@@ -157,6 +157,7 @@ impl Trajectory {
 
     /// The present time of the model.
     #[must_use]
+    #[inline]
     pub fn time(&self) -> &Double {
         &self.time
     }
@@ -169,11 +170,13 @@ impl Trajectory {
     }
 
     /// Lets time pass in which nothing moves.
+    #[inline]
     pub fn wait(&mut self, time: Double) {
         self.time = self.time.add(time);
     }
 
     /// Starts anew from the present state: the equation has changed.
+    #[inline]
     pub fn restart(&mut self) {
         self.restless = self.advances == 1;
         self.advances = 0;
@@ -315,6 +318,7 @@ impl Trajectory {
     }
 
     /// The end of the last piece.
+    #[inline]
     fn end(&self) -> Double {
         self.pieces.list().last().map_or(Double::ZERO, Piece::end)
     }
