@@ -224,6 +224,32 @@ fn bad_arguments_are_refused_and_change_nothing() {
     }
 }
 
+/// What a host's integrator has tried is named, in few digits, by the number that is at fault.
+#[test]
+fn a_trial_is_refused_with_the_number_that_is_at_fault() {
+    let host = Host::in_phase_of(EXCHANGE, "continuous");
+    for (states, fault) in [
+        ([1e200, 0.0], "no motion at the stretch 1e200;"),
+        ([1e200, 1e200], "no motion at the stretch 1e200;"),
+        ([-1e200, 0.0], "no motion at the stretch -1e200;"),
+        ([0.0, 0.0], "no motion at the stretch 0;"),
+        ([1.1, 1e200], "no motion at the stretch rate 1e200;"),
+        ([0.9, -1e180], "no motion at the stretch rate -1e180;"),
+    ] {
+        let status = unsafe {
+            assert_eq!(
+                fmi2SetContinuousStates(host.component, states.as_ptr(), 2),
+                OK
+            );
+            fmi2GetDerivatives(host.component, [0.0; 2].as_mut_ptr(), 2)
+        };
+        let line = host.last_line();
+        assert_eq!(status, DISCARD, "{states:?}");
+        assert!(line.contains(fault), "{states:?}: {line}");
+        assert!(line.len() < 120, "{states:?}: {line}");
+    }
+}
+
 #[test]
 fn results_that_are_no_numbers_are_discarded() {
     let host = Host::in_phase_of(EXCHANGE, "continuous");

@@ -186,6 +186,19 @@ def test_terminate_ends_the_run_at_the_collapse(fmu_path, instantiate, reference
         slave.doStep(ended, 1.0)
 
 
+@pytest.mark.timeout(120)
+def test_a_step_that_is_too_much_work_ends_the_run(fmu_path):
+    """FMPy asks for a step that was discarded again, for ever if it is not told to end."""
+    result = simulate_fmu(
+        str(fmu_path),
+        start_values={"phi_ac": 0.3, "omega_ac": 1000.0},
+        stop_time=2e9,
+        output_interval=1e9,
+    )
+    assert 0.0 < result["time"][-1] < 1e9
+    assert 0.5 < result["lambda"][-1] < 2.0
+
+
 def test_many_load_and_unload_cycles(fmu_path):
     """simulate_fmu loads and unloads the library at each call."""
     values = {simulate_fmu(str(fmu_path), start_values={"phi": 0.6}, stop_time=1.0)["lambda"][-1] for _ in range(30)}

@@ -1,4 +1,5 @@
-//! Every set of processor instructions gives the same motion.
+//! Every set of processor instructions gives the same motion, in any floating-point environment
+//! of the host.
 
 use fearless_simd::Level;
 
@@ -64,6 +65,87 @@ fn all_levels_give_the_same_motion() {
                 };
                 let worst = run.iter().zip(other_run).map(error).fold(0.0, f64::max);
                 assert_at_most(worst, allowed::LEVELS, &what);
+            }
+        }
+    }
+}
+
+/// A motion from rest under a load that changes on the way, up to a limit if it comes to one.
+fn changing(level: Level, motions: &[Motion], step: f64) -> Vec<State> {
+    let mut trajectory = from_rest(1e-10).with_level(level);
+    let mut states = Vec::new();
+    for motion in motions {
+        trajectory.restart();
+        for _ in 0..10 {
+            match trajectory.advance(motion, step) {
+                Ok(Progress::Whole) => states.push(trajectory.state()),
+                _ => return states,
+            }
+        }
+    }
+    states
+}
+
+/// A host that has every exception trap, one that rounds up, and one that flushes subnormal
+/// numbers to zero: what is computed inside the guard is what is always computed, no trap is
+/// sprung, and the flags are as they were.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn no_level_follows_the_floating_point_environment_of_the_host() {
+    use dielectric_elastomer_actuator::abi::float_environment::FloatEnvironment;
+
+    const DEFAULT: u32 = 0x1f80;
+    #[expect(unsafe_code, reason = "sets the environment as a host does")]
+    fn within<T>(environment: u32, call: impl FnOnce() -> T) -> T {
+        let (mut before, mut after) = (0_u32, 0_u32);
+        // SAFETY: reads and writes MXCSR; nothing is computed in the host's environment.
+        unsafe {
+            std::arch::asm!("stmxcsr [{}]", in(reg) &mut before);
+            std::arch::asm!("ldmxcsr [{}]", in(reg) &environment);
+        }
+        let result = {
+            let _ours = FloatEnvironment::entered();
+            call()
+        };
+        // SAFETY: as above.
+        unsafe {
+            std::arch::asm!("stmxcsr [{}]", in(reg) &mut after);
+            std::arch::asm!("ldmxcsr [{}]", in(reg) &before);
+        }
+        assert_eq!(after, environment, "{after:x} and not {environment:x}");
+        result
+    }
+
+    let mut random = Random(12);
+    for case in 0..30 {
+        let actuator = random.actuator([-1.0, 6.0], 0.2, 0.05);
+        let unit = (actuator.aspect + 2.0).sqrt();
+        let motions: Vec<Motion> = (0..6)
+            .map(|k| {
+                // The first voltage step, weak ones, and some that no actuator survives.
+                let voltage = random.of(&[0.0, 1e-160, 0.1, 0.4, 0.6, 1.5]);
+                let mut load = Load::constant(voltage, random.between(-0.3, 0.3));
+                if k % 3 == 2 {
+                    load.harmonic = [0.3, random.between(0.1, 500.0) / unit, 0.5];
+                }
+                let mut motion = motion(&actuator, &load);
+                let slope = random.of(&[0.0, 1e-310, 1e-3]) / unit;
+                motion.drive.voltage.set_derivative(1, slope);
+                motion
+            })
+            .collect();
+        let step = unit * random.of(&[1e-6, 0.02, 0.3, 4.0]);
+        for (name, _, level) in levels() {
+            let usual = changing(level, &motions, step);
+            for environment in [
+                DEFAULT & !0x1f80,
+                DEFAULT & !0x680,
+                DEFAULT | 0x4000,
+                DEFAULT | 0x8040,
+                DEFAULT | 0x3f,
+            ] {
+                let there = within(environment, || changing(level, &motions, step));
+                assert_eq!(there, usual, "{name}, case {case}, {environment:x}");
             }
         }
     }
