@@ -21,6 +21,9 @@ pub struct Exchange<M: Model> {
     pub(super) time: Double,
     pub(super) state: M::State,
     pub(super) collapse: Option<Collapse<M::Limit>>,
+    /// The limit at which the host's last step has ended, where the simulation is to end there:
+    /// hosts read for the last time before they handle the event that tells them so.
+    pub(super) arrival: Option<Collapse<M::Limit>>,
     pub(super) record: M::Record,
 }
 
@@ -42,6 +45,7 @@ impl<M: Model> Exchange<M> {
             time,
             state,
             collapse: None,
+            arrival: None,
             record: M::Record::begin(scene, time, state),
         }
     }
@@ -53,10 +57,10 @@ impl<M: Model> Exchange<M> {
 
     /// Whether the numbers can be those of a motion.
     pub(super) fn is_sound(&self, scene: &M::Scene) -> bool {
-        let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
+        let mut collapses = self.collapse.iter().chain(&self.arrival);
         M::is_finite(&self.state)
             && self.time.is_finite()
-            && collapsed.is_finite()
+            && collapses.all(|collapse| collapse.time.is_finite())
             && self.record.is_valid(scene)
     }
 }
@@ -96,6 +100,7 @@ impl<M: Model> Instance<M> {
     pub fn new_discrete_states(&mut self) -> Result<Update, Fault> {
         let scene = self.scene.clone();
         let exchange = self.exchange()?;
+        exchange.arrival = None;
         let mut update = Update {
             terminate: false,
             states_changed: false,
@@ -134,6 +139,7 @@ impl<M: Model> Instance<M> {
 
     /// Whether an event is to be handled after this step of the host's
     /// integrator: its search for events may have missed that a limit was passed.
+    /// Where the simulation is to end there, the collapse can be read from now on.
     ///
     /// # Errors
     /// Error before initialization has ended.
@@ -142,8 +148,13 @@ impl<M: Model> Instance<M> {
         let exchange = self.exchange()?;
         let (time, state) = (exchange.time, exchange.state);
         exchange.record.include_step(&scene, time, state);
-        Ok(exchange.collapse.is_none()
-            && M::limit_reached(&scene, &exchange.time, &exchange.state, 0.0).is_some())
+        if exchange.collapse.is_some() {
+            return Ok(false);
+        }
+        exchange.arrival = M::limit_reached(&scene, &time, &state, REACHED)
+            .filter(|&limit| M::at_limit(&scene, limit) == AtLimit::Terminate)
+            .map(|limit| Collapse { limit, time });
+        Ok(exchange.arrival.is_some() || M::limit_reached(&scene, &time, &state, 0.0).is_some())
     }
 
     /// Sets the time of the model.
@@ -152,7 +163,9 @@ impl<M: Model> Instance<M> {
     /// Error for a time that is not finite.
     pub fn set_time(&mut self, time: f64) -> Result<(), Fault> {
         check_time("time", time)?;
-        self.exchange()?.time = Double::new(time);
+        let exchange = self.exchange()?;
+        exchange.time = Double::new(time);
+        exchange.arrival = None;
         Ok(())
     }
 
@@ -171,9 +184,10 @@ impl<M: Model> Instance<M> {
                 Shortest(*bad)
             )));
         }
-        let state = &mut self.exchange()?.state;
+        let exchange = self.exchange()?;
+        exchange.arrival = None;
         for (place, &value) in states.iter().enumerate() {
-            if let Some(component) = M::component(state, place) {
+            if let Some(component) = M::component(&mut exchange.state, place) {
                 *component = value;
             }
         }

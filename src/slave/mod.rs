@@ -21,7 +21,7 @@ pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Model, Motion, Place, Record, View};
+use crate::model::{AtLimit, Model, Motion, Place, Record, View};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 use crate::variables::Access;
@@ -150,10 +150,14 @@ impl<M: Model> Instance<M> {
             }
             Course::Exchange(now) => {
                 let (state, record) = (now.state, now.record);
+                let arrival = now
+                    .arrival
+                    .as_ref()
+                    .filter(|at| M::at_limit(scene, at.limit) == AtLimit::Terminate);
                 (
                     Place::At { state, record },
                     &now.time,
-                    now.collapse.as_ref(),
+                    now.collapse.as_ref().or(arrival),
                 )
             }
             Course::Ahead => {

@@ -227,6 +227,7 @@ impl<M: Model> Instance<M> {
                         && let Some(component) = state_component::<M>(&mut now.state, reference)
                     {
                         *component = value;
+                        now.arrival = None;
                     }
                     false
                 }

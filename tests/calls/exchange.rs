@@ -171,7 +171,27 @@ fn a_collapse_that_terminates_asks_the_host_to() {
         assert_eq!(fmi2ExitInitializationMode(host.component), OK);
         assert_eq!(fmi2EnterContinuousTimeMode(host.component), OK);
     }
+    let completed = || unsafe {
+        let (mut event, mut terminate) = (7, 7);
+        assert_eq!(
+            fmi2CompletedIntegratorStep(host.component, 1, &mut event, &mut terminate),
+            OK
+        );
+        assert_eq!(terminate, 0);
+        event
+    };
+    // What the last step has come to can be read before the event that ends the simulation;
+    // a step that the host takes back has come to nothing.
+    for (time, stretch, collapsed) in [(1.9, 9.9, 0), (2.1, 10.1, 1), (1.95, 9.95, 0)] {
+        host.put(time, [stretch, 1.0]);
+        assert_eq!(host.get("collapsed"), 0.0);
+        assert_eq!(completed(), collapsed);
+        assert_eq!(host.get("collapsed"), f64::from(collapsed));
+    }
     host.put(2.0, [10.0, 1.0]);
+    assert_eq!(completed(), 1);
+    assert_eq!(host.get("collapsed"), 1.0);
+    assert_eq!(host.get("pull_in_time"), 2.0);
     for _ in 0..2 {
         let info = host.event();
         assert_eq!(

@@ -60,6 +60,8 @@ def test_a_collapse_that_terminates_ends_the_run(fmu_path):
     theirs = run(fmu_path, "ModelExchange", scene, 1e-10)
     assert theirs["time"][-1] == pytest.approx(ours["time"][-1], abs=allowed.CVODE_EVENT)
     assert theirs["lambda"][-1] == pytest.approx(10.0, rel=1e-9)
+    assert theirs["pulled_in"][-1] and not theirs["pulled_in"][:-1].any()
+    assert theirs["pull_in_time"][-1] == theirs["time"][-1]
 
 
 def test_inputs_and_tunable_parameters_change_at_events(fmu_path):

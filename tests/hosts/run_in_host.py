@@ -1,5 +1,6 @@
 """The motion of one scene as another host computes it: ``run_in_host.py HOST FMU`` prints a row for each
-communication point: λ and λ3. A process of its own for each host: one that crashes
+communication point: λ and λ3. ``run_in_host.py HOST FMU terminate`` runs a scene in which the actuator collapses, and
+the FMU asks the host to end there. A process of its own for each host: one that crashes
 takes nothing with it. The communication step is a power of two, so that every host means the same times."""
 
 import contextlib
@@ -18,6 +19,10 @@ STEPS = 240
 SWITCH = 120
 """Number of steps after which `phi` is set anew, by hosts that can."""
 PHI_THEN = 0.25
+COLLAPSE = {"phi": 0.7, "S": 0.0, "terminate_on_pull_in": 1.0}
+"""Start values with which the actuator collapses at t = 38.6057618134."""
+COLLAPSE_STEPS = 400
+"""Number of steps that are asked for then: to t = 50."""
 OUTPUTS = ("lambda", "lambda3")
 MODEL = "DielectricElastomerActuator"
 COFMUPY = Path(sys.prefix) / "cofmupy"
@@ -126,7 +131,8 @@ def with_libcosimpy(fmu: str) -> Rows:
     for step in range(STEPS):
         if step == SWITCH:
             manipulator.slave_real_values(slave, [reference["phi"]], [PHI_THEN])
-        execution.step()
+        if not execution.step():
+            raise RuntimeError("CosimExecution.step() gave False")
         rows.append(observer.last_real_values(slave, outputs))
     # It reads for the first time after the first step.
     return [[math.nan] * len(outputs), *rows]
@@ -247,6 +253,10 @@ def is_there(host: str) -> bool:
 
 
 if __name__ == "__main__":
-    host, fmu = sys.argv[1:]
+    host, fmu, *what = sys.argv[1:]
+    if what == ["terminate"]:
+        START_VALUES.clear()
+        START_VALUES.update(COLLAPSE)
+        STEPS = SWITCH = COLLAPSE_STEPS
     for row in HOSTS[host](fmu):
         print("row", *map(float, row))
