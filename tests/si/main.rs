@@ -2,4 +2,5 @@
 
 mod host;
 mod motion;
+mod presets;
 mod refusals;
