@@ -28,7 +28,6 @@ pub struct Polynomial {
 impl Polynomial {
     /// A constant input.
     #[must_use]
-    #[inline]
     pub const fn constant(value: f64) -> Polynomial {
         let mut term = [0.0; HIGHEST_DERIVATIVE + 1];
         term[0] = value;
@@ -36,14 +35,12 @@ impl Polynomial {
     }
 
     /// The input with its value replaced.
-    #[inline]
     pub fn set_value(&mut self, value: f64) {
         self.term[0] = value;
     }
 
     /// This input with its value replaced and its derivatives kept.
     #[must_use]
-    #[inline]
     pub fn with_value(mut self, value: f64) -> Polynomial {
         self.set_value(value);
         self
@@ -92,7 +89,6 @@ impl Polynomial {
 
     /// The value at the moment in which the input was set.
     #[must_use]
-    #[inline]
     pub fn value(&self) -> f64 {
         self.term[0]
     }
@@ -215,19 +211,11 @@ impl Drive {
             && self.prestress.is_finite()
     }
 
-    /// Whether the inputs keep their values.
-    #[must_use]
-    #[inline]
-    pub fn inputs_are_constant(&self) -> bool {
-        self.voltage.is_constant() && self.prestress.is_constant()
-    }
-
     /// Whether voltage and prestress keep their values.
     #[must_use]
-    #[inline]
     pub fn is_constant(&self) -> bool {
         let alternating = self.harmonic.amplitude != 0.0 && self.harmonic.frequency != 0.0;
-        !alternating && self.inputs_are_constant()
+        !alternating && self.voltage.is_constant() && self.prestress.is_constant()
     }
 
     /// Counts the time of the inputs from `time` on.
@@ -262,7 +250,7 @@ impl Drive {
     #[must_use]
     #[inline(always)]
     pub fn at(&self, time: &Double) -> LocalDrive<'_> {
-        let constant = self.inputs_are_constant();
+        let constant = self.voltage.is_constant() && self.prestress.is_constant();
         LocalDrive {
             drive: self,
             shift: if constant {

@@ -61,7 +61,7 @@ impl Model for Nondimensional {
 
     #[inline]
     fn inputs_are_held(scene: &Scene) -> bool {
-        scene.drive.inputs_are_constant()
+        scene.drive.voltage.is_constant() && scene.drive.prestress.is_constant()
     }
 
     fn check_start(scene: &Scene) -> Result<(), String> {
