@@ -292,17 +292,25 @@ impl LocalDrive<'_> {
     /// Total voltage φ + φ_a sin(ωt + ϑ) at `offset` after the origin.
     #[inline(always)]
     pub fn voltage<N: Number>(&self, offset: N) -> N {
-        let voltage = self.input(&self.drive.voltage, offset);
-        let Some(angle) = self.angle else {
-            return voltage;
+        let Some([frequency, angle]) = self.harmonic() else {
+            return self.input(&self.drive.voltage, offset);
         };
-        let Harmonic {
-            amplitude,
-            frequency,
-            ..
-        } = self.drive.harmonic;
         let angle = offset.mul_add(offset.same(frequency), offset.same(angle));
-        angle.sin().mul_add(offset.same(amplitude), voltage)
+        self.voltage_with_sine(offset, angle.sin())
+    }
+
+    /// The same where the sine is known.
+    #[inline(always)]
+    pub fn voltage_with_sine<N: Number>(&self, offset: N, sine: N) -> N {
+        let voltage = self.input(&self.drive.voltage, offset);
+        sine.mul_add(offset.same(self.drive.harmonic.amplitude), voltage)
+    }
+
+    /// Angular frequency of the alternating voltage and its angle at the origin, less whole
+    /// turns; nothing where nothing alternates.
+    #[inline(always)]
+    pub fn harmonic(&self) -> Option<[f64; 2]> {
+        Some([self.drive.harmonic.frequency, self.angle?])
     }
 
     /// Prestress at `offset` after the origin.

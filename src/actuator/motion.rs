@@ -138,6 +138,20 @@ impl LocalEquation for LocalMotion<'_> {
     }
 
     #[inline(always)]
+    fn harmonic(&self) -> Option<[f64; 2]> {
+        self.drive.harmonic()
+    }
+
+    #[inline(always)]
+    fn load_with_sine<N: Number>(&self, offset: N, sine: N) -> Load<N> {
+        let voltage = self.drive.voltage_with_sine(offset, sine);
+        Load {
+            voltage_squared: voltage * voltage,
+            prestress: self.drive.prestress(offset),
+        }
+    }
+
+    #[inline(always)]
     fn acceleration<N: Number>(&self, load: Load<N>, position: N, rate: N) -> N {
         acceleration(&self.coefficients.same(position), load, position, rate)
     }

@@ -2,7 +2,8 @@
 //!
 //! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
 //! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
-//! * `stride`: steps of 8 nodes over long ways, of which only the end is asked for;
+//! * `endpoint`: steps of 8 nodes over long ways, of which only the end is asked for;
+//! * `stride`: the same for a single way, after which the equation changes;
 //! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`ensemble`]: many motions at once, one in each lane;
 //! * [`coupled`]: the same with first-order states and dissipation;
@@ -18,6 +19,7 @@
 pub mod collocation;
 pub mod coupled;
 pub mod double;
+mod endpoint;
 pub mod ensemble;
 pub mod extremes;
 pub mod jet;
@@ -97,6 +99,19 @@ pub trait LocalEquation {
 
     /// The load at `offset` after the origin of time.
     fn load<N: Number>(&self, offset: N) -> Self::Load<N>;
+
+    /// The part of the load that alternates: its angular frequency, and its angle at the origin
+    /// of time. Nothing where there is none.
+    #[inline(always)]
+    fn harmonic(&self) -> Option<[f64; 2]> {
+        None
+    }
+
+    /// The load at `offset`, where the sine of its alternating part is known.
+    #[inline(always)]
+    fn load_with_sine<N: Number>(&self, offset: N, _sine: N) -> Self::Load<N> {
+        self.load(offset)
+    }
 
     /// x'' under this load.
     fn acceleration<N: Number>(&self, load: Self::Load<N>, position: N, rate: N) -> N;

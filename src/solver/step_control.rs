@@ -143,7 +143,7 @@ pub(super) fn verdict(ratio: f64, order: f64, effort: f64) -> Verdict {
 
 /// `x` to a small `exponent`, to a few thousandths: a logarithm that is linear
 /// between powers of 2, since the real one takes as long as two sweeps.
-fn power(x: f64, exponent: f64) -> f64 {
+pub(super) fn power(x: f64, exponent: f64) -> f64 {
     const ONE: f64 = 1.0_f64.to_bits() as f64;
     f64::from_bits((ONE + exponent * (x.to_bits() as f64 - ONE)) as u64)
 }

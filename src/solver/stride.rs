@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::collocation::{Diverged, Guess, Series, Substep, Task, solve_by_8, solve_by_16};
 use super::double::Double;
+use super::endpoint::{End, Way};
 use super::step_control::{StepControl, Verdict};
-use super::{Equation, LocalEquation, State};
+use super::{Equation, LocalEquation};
 
 /// Node pairs of a stride at a tight one.
 const MOST_PAIRS: usize = super::segment::PAIRS;
@@ -41,42 +42,6 @@ pub struct Strides {
     before: Option<(f64, [f64; MOST_PAIRS], [f64; MOST_PAIRS])>,
     /// The contraction to be expected by the square of the length.
     contraction: f64,
-}
-
-/// A way to go.
-#[derive(Clone, Copy, Debug)]
-pub struct Way {
-    /// Time of the model at its begin.
-    pub begin: Double,
-    /// The present, counted from there.
-    pub now: Double,
-    /// Present state.
-    pub state: State,
-    /// The time to be reached, counted from there.
-    pub target: Double,
-    /// Positions between which strides may go.
-    pub clear: (f64, f64),
-    /// How many substeps may still be solved.
-    pub budget: u32,
-}
-
-impl Way {
-    /// Present time of the model.
-    pub fn time(&self) -> Double {
-        self.begin.add(self.now)
-    }
-}
-
-/// How strides ended.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum End {
-    /// At the time to be reached.
-    Reached,
-    /// Where the next one would not stay between the clear positions, would be
-    /// too short, or would see a drive that needs more nodes.
-    Blocked,
-    /// Where the budget is spent.
-    TooMany,
 }
 
 impl Strides {

@@ -212,7 +212,7 @@ pub(super) const fn twice(p: &Legendre, k: usize) -> Double {
     }
 }
 
-const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
+pub(super) const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
     let mut sum = Double::ZERO;
     let mut k = parity;
     while k < MOST_NODES {
@@ -222,7 +222,7 @@ const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> 
     sum
 }
 
-const fn sum_twice(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
+pub(super) const fn sum_twice(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
     let mut sum = Double::ZERO;
     let mut k = parity;
     while k < MOST_NODES {

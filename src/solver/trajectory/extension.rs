@@ -3,6 +3,7 @@
 use super::Trajectory;
 use crate::solver::collocation::{Diverged, Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
+use crate::solver::endpoint::{End, Way};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
@@ -10,7 +11,6 @@ use crate::solver::pieces::{CAPACITY, Piece};
 use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::short_step::{ShortStep, Trend};
 use crate::solver::step_control::Verdict;
-use crate::solver::stride::{End, Way};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// First substep in units of the motion's time scale.
@@ -29,7 +29,10 @@ impl Trajectory {
             return true;
         }
         let orbits = self.follows_orbits && equation.repeats();
-        !orbits && self.strides.are_shorter_than(rest)
+        if self.restless {
+            return !orbits && self.strides.are_shorter_than(rest);
+        }
+        !orbits && self.steps.are_shorter_than(rest)
     }
 
     /// Makes the first step from the origin on in 4 nodes, if that is possible.
@@ -76,11 +79,6 @@ impl Trajectory {
     ) -> Double {
         let begin = self.end();
         self.arrive(begin);
-        let control = if self.restless {
-            self.control.repeated()
-        } else {
-            self.control
-        };
         let mut way = Way {
             begin: self.origin.add(begin),
             now: Double::ZERO,
@@ -89,17 +87,10 @@ impl Trajectory {
             clear: self.clear(),
             budget: *budget,
         };
-        // A single one takes longer with 16 nodes.
-        let single = || {
-            let local = equation.seen_from(&way.begin);
-            target.since(begin) < local.time_scale(way.state)
-        };
-        let few = control.is_loose() || self.restless && single();
-        let (level, strides) = (self.level, &mut self.strides);
-        let end = if few {
-            strides.go(level, equation, control, &mut way)
+        let end = if self.restless {
+            self.single_way(equation, &mut way)
         } else {
-            strides.go_finely(level, equation, control, &mut way)
+            self.steps.go(self.level, equation, self.control, &mut way)
         };
         *budget = way.budget;
         let shift = if end == End::Reached {
@@ -110,6 +101,19 @@ impl Trajectory {
         self.stand_at(way.time(), way.state);
         *clear = end != End::Blocked;
         shift
+    }
+
+    /// Goes a way after which the equation changes: a plan of equal steps would serve once only.
+    fn single_way<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
+        let control = self.control.repeated();
+        let local = equation.seen_from(&way.begin);
+        // A single step takes longer with 16 nodes.
+        let single = way.target.since(Double::ZERO) < local.time_scale(way.state);
+        if control.is_loose() || single {
+            self.strides.go(self.level, equation, control, way)
+        } else {
+            self.strides.go_finely(self.level, equation, control, way)
+        }
     }
 
     /// Adds one more piece; `rest` is the time still asked for. Returns by how

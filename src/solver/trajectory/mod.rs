@@ -9,6 +9,7 @@ use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
 use super::double::Double;
+use super::endpoint::EndpointSteps;
 use super::extremes::Extremes;
 use super::limits::{Limit, Limits};
 use super::orbit::Orbit;
@@ -72,6 +73,8 @@ pub struct Trajectory {
     /// What f was in the last short step.
     trend: Option<Trend>,
     /// Where communication points lie far apart.
+    steps: EndpointSteps,
+    /// The same where the equation changes at each of them.
     strides: Strides,
     /// How far the motion has swung, where that is recorded.
     extremes: Option<Extremes>,
@@ -106,6 +109,7 @@ impl Trajectory {
             advances: 0,
             restless: false,
             trend: None,
+            steps: EndpointSteps::NONE,
             strides: Strides::NONE,
             extremes: None,
             recorded: Double::ZERO,
@@ -180,6 +184,7 @@ impl Trajectory {
     pub fn restart(&mut self) {
         self.restless = self.advances == 1;
         self.advances = 0;
+        self.steps.restart();
         self.strides.restart();
         // Without a piece it stands at its start.
         if self.pieces.count() > 0 {

@@ -43,6 +43,7 @@ impl Trajectory {
             && (!self.at_rest || first.is_none() && self.start.rate == 0.0)
             && length > 0.0
             && length.is_finite()
+            && self.steps.are_sound()
             && self.strides.are_sound()
             && self.is_between_limits()
     }

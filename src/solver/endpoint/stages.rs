@@ -1,0 +1,119 @@
+//! The stages of one step, iterated on a plan.
+
+use fearless_simd::{Simd, SimdBase, f64x4};
+
+use super::plan::{Pair, Plan, largest};
+use crate::solver::collocation::Closeness;
+use crate::solver::jet::Dual;
+use crate::solver::lanes::Lanes;
+use crate::solver::number::Number;
+use crate::solver::{LocalEquation, State};
+
+/// States over which the slope of a plan is averaged.
+pub const AVERAGED: f64 = 16.0;
+
+/// Iterations after which one that still moves is given up.
+pub const MOST_ITERATIONS: u32 = 40;
+
+/// The stages of a step, as far as they have been iterated.
+pub struct Stages<S: Simd> {
+    /// g of the plan at the nodes.
+    pub g: Pair<S>,
+    /// x − x_0 there.
+    pub displacement: Pair<S>,
+    /// How often they were iterated.
+    pub iterations: u32,
+    /// By how much the last iteration moved the end.
+    pub change: f64,
+    /// By how much the one before did.
+    pub last_change: f64,
+    /// Whether that was enough.
+    pub close: bool,
+}
+
+/// Iterates the stages of a step from a guess of g.
+#[inline(always)]
+#[expect(clippy::too_many_arguments, reason = "in registers, each by its name")]
+pub fn solve<S: Simd, L: LocalEquation>(
+    simd: S,
+    plan: &Plan,
+    local: &L,
+    loads: [L::Load<f64x4<S>>; 2],
+    state: State,
+    guess: Pair<S>,
+    planned: u32,
+    closeness: Closeness,
+) -> Stages<S> {
+    let free = plan.free(simd, state.rate);
+    let start = f64x4::splat(simd, state.position);
+    let slope = f64x4::splat(simd, -plan.slope);
+    // g moves the end by no more than this.
+    let reach = 2.0 * plan.half * plan.half;
+    let [mut g, mut last] = [guess; 2];
+    let mut iterations = 0;
+    loop {
+        let [displacement, rate] = plan.stages(simd, g, free);
+        let before_last = last;
+        last = g;
+        for k in 0..2 {
+            let f = local.acceleration(loads[k], start + displacement[k], rate[k]);
+            g[k] = displacement[k].mul_add(slope, f);
+        }
+        iterations += 1;
+        // What follows would be waited for.
+        if iterations < planned {
+            continue;
+        }
+        let change = reach * largest::<S>([g[0] - last[0], g[1] - last[1]]);
+        let last_change =
+            reach * largest::<S>([last[0] - before_last[0], last[1] - before_last[1]]);
+        let close = closeness.is_reached(change, last_change, [change, last_change]);
+        // NaN fails each comparison and ends the iteration.
+        let converging = change < last_change;
+        if close || !converging || iterations == MOST_ITERATIONS {
+            return Stages {
+                g,
+                displacement,
+                iterations,
+                change,
+                last_change,
+                close: close && change.is_finite(),
+            };
+        }
+    }
+}
+
+/// Whether a step stays between these positions: between two nodes the motion may go a
+/// little beyond both.
+#[inline(always)]
+pub fn is_clear<S: Simd>(
+    (lowest, highest): (f64, f64),
+    position: f64,
+    moved: f64,
+    swing: f64,
+    [low, high]: Pair<S>,
+) -> bool {
+    let far = 1.5 * swing.max(moved.abs());
+    if position - far > lowest && position + far < highest {
+        return true;
+    }
+    let up = Lanes::<S, 4>::max(low, high).largest().max(moved).max(0.0);
+    let down = Lanes::<S, 4>::min(low, high).smallest().min(moved).min(0.0);
+    let beyond = 0.25 * (up - down);
+    position + down - beyond > lowest && position + up + beyond < highest
+}
+
+/// ∂f/∂x over the last states, this one too, and over how many.
+#[inline(never)]
+pub fn averaged<L: LocalEquation>(local: &L, state: State, mean: f64, states: f64) -> (f64, f64) {
+    let load = local.load(Dual::constant(0.0));
+    let position = Dual::new(state.position, 1.0);
+    let slope = local
+        .acceleration(load, position, Dual::constant(state.rate))
+        .slope();
+    let states = (states + 1.0).min(AVERAGED);
+    let next = mean + (slope - mean) / states;
+    // The first one counts alone.
+    let next = if states == 1.0 { slope } else { next };
+    (if next.is_finite() { next } else { 0.0 }, states)
+}

@@ -1,0 +1,53 @@
+//! A way to go, and how far it was gone.
+
+use crate::solver::double::Double;
+use crate::solver::{Equation, LocalEquation, State};
+
+/// A way to go.
+#[derive(Clone, Copy, Debug)]
+pub struct Way {
+    /// Time of the model at its begin.
+    pub begin: Double,
+    /// The present, counted from there.
+    pub now: Double,
+    /// Present state.
+    pub state: State,
+    /// The time to be reached, counted from there.
+    pub target: Double,
+    /// Positions between which steps may go.
+    pub clear: (f64, f64),
+    /// How many steps may still be solved.
+    pub budget: u32,
+}
+
+impl Way {
+    /// Present time of the model.
+    pub fn time(&self) -> Double {
+        self.begin.add(self.now)
+    }
+
+    /// Goes what rounding has left of the way.
+    #[inline(always)]
+    pub(super) fn round_off<E: Equation>(&mut self, equation: &E) {
+        let rest = self.target.since(self.now);
+        if rest != 0.0 {
+            let f = equation
+                .seen_from(&self.time())
+                .acceleration_from(self.state);
+            self.state.position += rest * self.state.rate;
+            self.state.rate += rest * f;
+            self.now = self.target;
+        }
+    }
+}
+
+/// How steps ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// At the time to be reached.
+    Reached,
+    /// Where the next one would not stay between the clear positions, or would be too short.
+    Blocked,
+    /// Where the budget is spent.
+    TooMany,
+}
