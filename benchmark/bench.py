@@ -1,6 +1,6 @@
 """Run time against error of the actuator and its rivals: the command behind `make bench`.
 
-    python benchmark/bench.py PROGRAM [--rounds 5] [--milliseconds 10] [--cases abcde] [--records FOLDER]
+    python benchmark/bench.py PROGRAM [--rounds 5] [--milliseconds 10] [--cases a,d,r1] [--records FOLDER]
 
 PROGRAM is the Rust side as make builds it. Each round goes through cases and methods in turn, so that a
 change of the machine's speed meets all of them; the fastest round counts. Each answer is held
@@ -16,7 +16,7 @@ from pathlib import Path
 import plots
 import ratios
 import records
-from cases import CASES, ROOT
+from cases import ALL_CASES, ROOT
 from programs import C_FLAGS, Missing, cvode, rust
 
 SKIPS_CASE = "d"
@@ -34,7 +34,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--milliseconds", type=int, default=10, help="least time of a measurement")
     parser.add_argument("--scipy-rounds", type=int, default=1)
     parser.add_argument("--van-der-pol", type=Path, help="shared library of the Reference FMU VanDerPol")
-    parser.add_argument("--cases", default="".join(case.name for case in CASES))
+    parser.add_argument("--cases", default=",".join(case.name for case in ALL_CASES))
     parser.add_argument("--records", type=Path, help="folder instead of benchmark/records")
     parser.add_argument("--figures", type=Path, default=FIGURES)
     return parser.parse_args()
@@ -93,6 +93,12 @@ class Rivals:
         if self.heyoka:
             yield from self.heyoka.steps(case, 1e-3 * options.milliseconds)
 
+    def ensembles(self, case, options):
+        """Many scenes at once, and one by one."""
+        yield from self.programs[0].rows("ensemble", case, options.milliseconds)
+        if self.heyoka:
+            yield from self.heyoka.ensemble(case, 1e-3 * options.milliseconds)
+
 
 def settings(options, rivals: Rivals) -> dict[str, str]:
     compiled = rivals.heyoka.compile_seconds if rivals.heyoka else []
@@ -113,10 +119,11 @@ def settings(options, rivals: Rivals) -> dict[str, str]:
     }
 
 
-def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]]:
-    """Raw rows: free-running, in communication steps, and with something skipped or not."""
-    free, steps, skips = [], [], []
-    cases = [case for case in CASES if case.name in options.cases]
+def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict], list[dict]]:
+    """Raw rows: free-running, in communication steps, with something skipped or not, many scenes."""
+    free, steps, skips, ensembles = [], [], [], []
+    names = options.cases.split(",")
+    cases = [case for case in ALL_CASES if case.name in names]
     for number in range(1, options.rounds + 1):
         for case in cases:
             print(f"round {number} of {options.rounds}, case {case.name}", flush=True)
@@ -127,7 +134,8 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
             if case.name == SKIPS_CASE:
                 rows = rivals.programs[0].rows("skips", case, options.milliseconds)
                 skips += [{**about, **row} for row in rows]
-    return free, steps, skips
+                ensembles += [{**about, **row} for row in rivals.ensembles(case, options)]
+    return free, steps, skips, ensembles
 
 
 def main() -> None:
@@ -137,7 +145,7 @@ def main() -> None:
         for name, reason in rivals.missing.items():
             print(f"missing: {name}: {reason}")
         facts = records.machine()
-        free, steps, skips = measure(options, rivals)
+        free, steps, skips, ensembles = measure(options, rivals)
     facts |= settings(options, rivals)
 
     target = records.folder(facts, options.records)
@@ -146,7 +154,7 @@ def main() -> None:
         records.write(target / "work_precision_raw.csv", facts, free),
         records.write(target / "work_precision.csv", facts, best_free),
     ]
-    text = ratios.table(best_free)
+    text = ratios.table(best_free) + "\n" + ratios.random_table(best_free)
     written.append(plots.work_precision(best_free, options.figures / "benchmark_work_precision.png"))
     if steps:
         written.append(records.write(target / "co_simulation_raw.csv", facts, steps))
@@ -158,6 +166,11 @@ def main() -> None:
         written.append(records.write(target / "skips_raw.csv", facts, skips))
         written.append(records.write(target / "skips.csv", facts, best_skips))
         text += "\n" + ratios.skip_table(best_skips)
+    if ensembles:
+        best_ensembles = records.fastest(ensembles)
+        written.append(records.write(target / "ensemble_raw.csv", facts, ensembles))
+        written.append(records.write(target / "ensemble.csv", facts, best_ensembles))
+        text += "\n" + ratios.ensemble_table(best_ensembles)
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import random
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +26,9 @@ class Case:
     phi: str = "0"
     phi_ac: str = "0"
     omega_ac: str = "0"
+    spacing: str = ""
+    """The time between two rows of the reference, where derive_references.py derives it."""
+
     stepped: bool = False
     """Whether the co-simulation pattern is timed on it too."""
 
@@ -50,10 +55,53 @@ _OWN = HERE / "references"
 CASES = (
     Case("a", "DC", _SHARED / "case_a.csv", phi="0.6", stepped=True, **_REFERENCE_SET),
     Case("b", "DC with prestress", _SHARED / "case_b.csv", phi="0.6", S="0.5", **_REFERENCE_SET),
-    Case("c", "DC near pull-in", _OWN / "case_c.csv", phi="0.646"),
+    Case("c", "DC near pull-in", _OWN / "case_c.csv", phi="0.646", spacing="25"),
     Case(
         *("d", "AC near resonance", _SHARED / "case_d.csv"),
         **dict(gamma_s="0.1", tau_s="0.05", E_s="0.2", phi_ac="0.3", omega_ac="0.1471", stepped=True),
     ),
-    Case("e", "AC, superharmonic", _OWN / "case_e.csv", phi_ac="0.3", omega_ac="0.2764", **_REFERENCE_SET),
+    Case(
+        *("e", "AC, superharmonic", _OWN / "case_e.csv"),
+        **dict(phi_ac="0.3", omega_ac="0.2764", spacing="100", **_REFERENCE_SET),
+    ),
 )
+
+RANDOM_SETS = 12
+SEED = 5
+
+
+def _rounded(value: float) -> str:
+    return f"{value:.3g}"
+
+
+def random_cases() -> tuple[Case, ...]:
+    """Driven motions of random actuators, r1 to r12: each with surface effects, prestress, an offset
+    voltage and a drive slower or faster than the actuator. Every fourth has no surface elasticity and a
+    voltage that may bring it near escape: r8 swings from λ = 0.59 to 2.10. The span is 200 time scales
+    √((c + 2)/6)."""
+    draw = random.Random(SEED).uniform
+    cases = []
+    for number in range(1, RANDOM_SETS + 1):
+        near_escape = number % 4 == 0
+        c = 10 ** draw(0, 6)
+        scale = math.sqrt((c + 2) / 6)
+        most = 0.02 if near_escape else 0.1
+        case = Case(
+            f"r{number}",
+            f"random set {number}" + (", no surface elasticity" if near_escape else ""),
+            _OWN / f"case_r{number}.csv",
+            c=_rounded(c),
+            gamma_s=_rounded(draw(0, most)),
+            tau_s=_rounded(draw(0, most)),
+            E_s="0" if near_escape else _rounded(draw(0, 0.4)),
+            S=_rounded(draw(0, most if near_escape else 0.3)),
+            phi=_rounded(draw(0.24, 0.28) if near_escape else draw(0.1, 0.3)),
+            phi_ac=_rounded(draw(0.34, 0.38) if near_escape else draw(0.1, 0.4)),
+            omega_ac=_rounded(10 ** draw(-0.7, -0.3 if near_escape else 0.4) / scale),
+            spacing=_rounded(10 * scale),
+        )
+        cases.append(case)
+    return tuple(cases)
+
+
+ALL_CASES = (*CASES, *random_cases())

@@ -15,7 +15,7 @@ import figure_style as style
 
 OURS = {"color": style.COLOURS[1], "linewidth": 2.4, "zorder": 4}
 LOOKS = {
-    "ours": {**OURS, "marker": "o"},
+    "ours, packed FMU": {**OURS, "marker": "o"},
     "ours without orbit reuse": {**OURS, "marker": "o", "markerfacecolor": "white", "linestyle": (0, (4, 1.5))},
     "ours baseline SIMD without orbit reuse": {**OURS, "marker": ".", "linewidth": 1.2, "linestyle": ":"},
     "heyoka": {"color": style.COLOURS[0], "marker": "s", "linewidth": 2},

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
+import statistics
 
-from cases import CASES
+from cases import CASES, random_cases
 
 LEVELS = (1e-6, 1e-9, 1e-12)
 RIVAL = "heyoka"
@@ -69,6 +70,42 @@ def table(rows: list[dict]) -> str:
         "Interpolated on the log-log curves; – where a method is never that accurate or was lost."
     )
     return note + "\n\n" + "\n\n".join(blocks) + "\n"
+
+
+def random_table(rows: list[dict]) -> str:
+    """Markdown: on each random set, how many times faster than heyoka at equal error; with the median and
+    the least over the sets."""
+    timed = {row["case"] for row in rows}
+    names = [case.name for case in random_cases() if case.name in timed]
+    if not names:
+        return ""
+    heads = [*names, "median", "least"]
+    lines = ["| method, error | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
+    for method in methods(rows):
+        for level in LEVELS:
+            ratios = []
+            for name in names:
+                own = time_at(curve(rows, name, method), level)
+                rival = time_at(curve(rows, name, RIVAL), level)
+                ratios.append(rival / own if own and rival else math.nan)
+            known = [ratio for ratio in ratios if not math.isnan(ratio)]
+            if not known or method == RIVAL:
+                continue
+            shown = [*ratios, statistics.median(known), min(known)]
+            cells = ["–" if math.isnan(ratio) else f"{ratio:.2g}×" for ratio in shown]
+            lines.append(f"| {method}, {level:g} | " + " | ".join(cells) + " |")
+    return "Random sets: how many times faster than heyoka at equal error.\n\n" + "\n".join(lines) + "\n"
+
+
+def ensemble_table(rows: list[dict]) -> str:
+    """Markdown: nanoseconds for each scene, scenes in a second on one core, and the error."""
+    lines = ["| many scenes, 2000 units of time each | tolerance | ns a scene | scenes a second | error |"]
+    lines.append("|---|---|---|---|---|")
+    for row in rows:
+        nanoseconds = float(row["nanoseconds"])
+        about = f"{row['method']}, {row['inputs']} | {float(row['tolerance']):g}"
+        lines.append(f"| {about} | {nanoseconds:.3g} | {1e9 / nanoseconds:.3g} | {float(row['error']):.0e} |")
+    return "One core.\n\n" + "\n".join(lines) + "\n"
 
 
 def step_table(rows: list[dict]) -> str:

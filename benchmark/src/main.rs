@@ -2,11 +2,12 @@
 //! of CSV. `benchmark/bench.py` calls it in turns with the other rivals.
 //!
 //! ```text
-//! benchmark free|steps|van_der_pol|skips milliseconds=10 c=100 gamma_s=… reference=case_a.csv
+//! benchmark free|steps|van_der_pol|skips|ensemble milliseconds=10 c=100 gamma_s=… reference=case_a.csv
 //!     fmu=DielectricElastomerActuator.so
 //! ```
 
 mod case;
+mod ensemble;
 mod fmu;
 mod free;
 mod host;
@@ -38,6 +39,7 @@ fn main() {
         "steps" => steps::run(&case, least),
         "van_der_pol" => steps::van_der_pol(&case, &arguments["library"], least),
         "skips" => skips::run(&case, least),
-        _ => panic!("the first argument is free, steps, van_der_pol or skips"),
+        "ensemble" => ensemble::run(&case, least),
+        _ => panic!("the first argument is free, steps, van_der_pol, skips or ensemble"),
     }
 }

@@ -12,7 +12,6 @@ use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, Sensitivity, State};
-use dielectric_elastomer_actuator::sweep;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
 
 use crate::case::Case;
@@ -25,7 +24,7 @@ use crate::timing::seconds_per_call;
 struct Skip<'a> {
     name: &'static str,
     tolerance: f64,
-    /// Calls, scenes or units of time of a run.
+    /// Calls or units of time of a run.
     units: f64,
     skipped: Box<dyn FnMut() -> f64 + 'a>,
     full: Box<dyn FnMut() -> f64 + 'a>,
@@ -41,8 +40,7 @@ pub fn run(case: &Case, least: Duration) {
     };
     let skips = integration(case, &motion)
         .into_iter()
-        .chain(calls(case, &constant))
-        .chain([lanes(case)]);
+        .chain(calls(case, &constant));
     for mut skip in skips {
         let (skipped, full) = ((skip.skipped)(), (skip.full)());
         let difference = (skipped - full).abs();
@@ -229,35 +227,6 @@ fn calls<'a>(case: &'a Case, constant: &'a Case) -> Vec<Skip<'a>> {
             Box::new(move || run(case, Host::log, &|_, _| {})),
         ),
     ]
-}
-
-/// Many scenes in lanes; nanoseconds for each scene.
-fn lanes<'a>(case: &Case) -> Skip<'a> {
-    const SCENES: usize = 200;
-    const TIME: f64 = 2000.0;
-    let [gamma, tau, elasticity] = case.surface;
-    let mut scenes = [Scene::at_start(); SCENES];
-    for (k, scene) in scenes.iter_mut().enumerate() {
-        scene.parameters.surface_energy = gamma;
-        scene.parameters.surface_tension = tau;
-        scene.parameters.surface_elasticity = elasticity;
-        scene.drive.harmonic.amplitude = case.amplitude;
-        scene.drive.harmonic.frequency = 0.05 + 0.25 * k as f64 / SCENES as f64;
-    }
-    let highest = |outcome: &Result<sweep::Outcome, _>| match outcome {
-        Ok(outcome) => outcome.extremes.highest,
-        Err(_) => f64::NAN,
-    };
-    Skip {
-        name: "scenes over 2000 units of time: in lanes for one by one",
-        tolerance: 1e-9,
-        units: SCENES as f64,
-        skipped: Box::new(move || sweep::follow(&scenes, TIME, 1e-9).iter().map(highest).sum()),
-        full: Box::new(move || {
-            let one = |scene| highest(&sweep::follow_one(scene, TIME, 1e-9));
-            scenes.iter().map(one).sum()
-        }),
-    }
 }
 
 /// Eq. 16 with its surface terms as they stand in the paper.

@@ -74,10 +74,10 @@ def driven_amplitude(g, tau, E, phi_a, omega, T, order, step):
     return (min(reached) ** -2 - max(reached) ** -2) / 2
 
 
-def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order):
+def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order, prestress=0, offset=0):
     """Taylor coefficients of λ and dλ/dt.
 
-    Eq. 16 with S = 0 reads M λ'' = 6 λ⁻⁷ λ'² + λ⁻⁵ − a1 λ − (a3 − φ²) λ³ − a5 λ⁵.
+    Eq. 16 reads M λ'' = 6 λ⁻⁷ λ'² + S + λ⁻⁵ − a1 λ − (a3 − φ²) λ³ − a5 λ⁵, φ = offset + phi_a sin(omega t).
     """
 
     def product(p, q, k):
@@ -88,6 +88,12 @@ def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order):
     for k in range(2, order):
         voltage.append(-((2 * omega) ** 2) * voltage[k - 2] / (k * (k - 1)))
     voltage[0] += phi_a**2 / 2
+    if offset:  # φ² has offset² + 2 offset phi_a sin(omega t) too
+        terms = [2 * offset * phi_a * sin(omega * time), 2 * offset * phi_a * omega * cos(omega * time)]
+        for k in range(2, order):
+            terms.append(-(omega**2) * terms[k - 2] / (k * (k - 1)))
+        terms[0] += offset**2
+        voltage = [one + other for one, other in zip(voltage, terms, strict=True)]
 
     L, V, A = [stretch], [rate], []
     V2, L2, L3, L5, U, U2, U3, U5, U6, U7, M = ([] for _ in range(11))
@@ -98,7 +104,7 @@ def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order):
         for series, (p, q) in ((V2, (V, V)), (L2, (L, L)), (L3, (L, L2)), (L5, (L2, L3))):
             series.append(product(p, q, k))
         M.append(2 * U6[k] + (c if k == 0 else 0))
-        force = 6 * product(U7, V2, k) + U5[k] - a1 * L[k] - a3 * L3[k] + product(voltage, L3, k) - a5 * L5[k]
+        force = (prestress if k == 0 else 0) + 6 * product(U7, V2, k) + U5[k] - a1 * L[k] - a3 * L3[k] + product(voltage, L3, k) - a5 * L5[k]
         A.append((force - (mp.fdot(M[1 : k + 1], A[k - 1 :: -1]) if k else 0)) / M[0])
         V.append(A[k] / (k + 1))
         L.append(V[k] / (k + 1))
