@@ -25,6 +25,7 @@ use dielectric_elastomer_actuator::abi::EXPORTED_NAMES;
 use dielectric_elastomer_actuator::description;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::nondimensional::Nondimensional;
+use dielectric_elastomer_actuator::si::Si;
 
 use archive::Entries;
 use inspect::Binary;
@@ -55,7 +56,7 @@ impl Fmu {
 }
 
 /// Every FMU that is shipped.
-const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>()];
+const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>(), Fmu::of::<Si>()];
 
 /// Build, check and pack the FMU
 #[derive(Parser)]

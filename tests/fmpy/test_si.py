@@ -1,0 +1,110 @@
+"""The FMU in SI units: scenes of the reference, the nondimensional FMU scaled, both interfaces, refusals."""
+
+import json
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+
+from dielectric_actuator import Actuator
+
+REFERENCE = Path(__file__).parents[1] / "reference" / "device"
+PLAIN = {"gamma_s": 0.0, "tau_s": 0.0, "E_s": 0.0, "voltage": 0.0}
+"""What the default device has and a scene may not."""
+
+NAMES = {"epsr": "eps_r", "n": "n_layers", "V": "voltage", "P": "force", "k": "k_load", "m": "m_load", "l_k": "l_load"}
+
+
+@pytest.fixture(scope="module")
+def si_path(fmu_path) -> Path:
+    path = fmu_path.with_name("DielectricElastomerActuatorSI.fmu")
+    if not path.is_file():
+        pytest.fail(f"no FMU at {path}: build and pack it first (make fmu)", pytrace=False)
+    return path
+
+
+def scene(name: str) -> tuple[dict[str, float], np.ndarray]:
+    """The start values of a scene, and rows t, stretch."""
+    content = json.loads((REFERENCE / f"{name}.json").read_text())
+    given = {NAMES.get(key, key): float(value) for key, value in content["parameters_SI"].items()}
+    rows = [[float(row["t_s"]), float(row["lambda"])] for row in content["rows"]]
+    return PLAIN | given, np.array(rows)
+
+
+def test_the_description_is_valid(si_path):
+    assert validate_fmu(str(si_path)) == []
+
+
+def test_the_first_click_moves(si_path):
+    """The default experiment: the paper's silicone after a step of the voltage, a few periods."""
+    result = fmpy.simulate_fmu(str(si_path))
+    stretch = result["lambda"]
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(stretch))))
+    assert stretch.max() > 1.05 and turns >= 4
+    assert result["charge"].max() > 0 and result["edge_displacement"].max() > 0
+
+
+@pytest.mark.parametrize("name", ["A_si_dc_step", "D_kv_step", "K_force_step_stack", "L_permittivity_step"])
+def test_scenes_of_the_reference(si_path, name):
+    start, rows = scene(name)
+    with Actuator(si_path) as actuator:
+        actuator.start(start)
+        time = 0.0
+        for end, stretch in rows:
+            if end > time:
+                actuator.advance(end - time)
+                time = end
+            assert actuator.get("lambda") == pytest.approx(stretch, abs=1e-9), f"t = {end}"
+
+
+def test_both_units_give_one_trajectory(si_path, fmu_path):
+    """The paper's silicone under 600 V, and the same in nondimensional quantities."""
+    content = json.loads((REFERENCE / "A_si_dc_step.json").read_text())
+    start, _ = scene("A_si_dc_step")
+    groups, scales = content["groups_nondimensional"], content["scales_SI"]
+    same = {"gamma_s": "gamma", "tau_s": "tau", "E_s": "E", "phi": "phi", "c": "c"}
+    nondimensional = {name: float(groups[key]) for name, key in same.items()}
+    with Actuator(si_path) as si, Actuator(fmu_path) as plain:
+        si.start(start)
+        plain.start(nondimensional)
+        unit = float(scales["t0"])
+        for _ in range(200):
+            si.advance(3.7 * unit)
+            plain.advance(3.7)
+            assert si.get("lambda") == pytest.approx(plain.get("lambda"), abs=2e-12)
+
+
+def test_model_exchange(si_path):
+    start, _ = scene("D_kv_step")
+    options = {"start_values": start, "stop_time": 2e-3, "output_interval": 1e-5, "output": ["lambda", "charge"]}
+    by_host = fmpy.simulate_fmu(str(si_path), fmi_type="ModelExchange", relative_tolerance=1e-8, **options)
+    own = fmpy.simulate_fmu(str(si_path), fmi_type="CoSimulation", **options)
+    assert len(by_host) > 100
+    ours = np.interp(by_host["time"], own["time"], own["lambda"])
+    assert np.abs(by_host["lambda"] - ours).max() < 1e-4
+    assert np.ptp(own["lambda"]) > 1e-3
+
+
+def test_a_saved_state_goes_on_bit_for_bit(si_path):
+    start, _ = scene("B_rc_step")
+    with Actuator(si_path) as actuator:
+        actuator.start(start)
+        actuator.advance(1e-4)
+        saved = actuator.save()
+        ends = []
+        for _ in range(2):
+            actuator.restore(saved)
+            for _ in range(10):
+                actuator.advance(1.3e-5)
+            ends.append(tuple(actuator.get(name) for name in ("lambda", "charge", "supply_current")))
+        assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("H", 10.0), ("H", 0.0), ("mu", -1.0), ("rho", 1.1), ("R_s", -1.0), ("L", float("nan"))]
+)
+def test_a_wrong_power_of_ten_is_refused(si_path, name, value):
+    with Actuator(si_path) as actuator, pytest.raises(Exception, match=name):
+        actuator.start({name: value})
