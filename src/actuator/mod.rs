@@ -16,6 +16,7 @@ pub mod drive;
 pub mod ensemble;
 pub mod motion;
 pub mod parameters;
+mod polynomial;
 pub mod scales;
 
 pub use coefficients::Coefficients;

@@ -15,7 +15,7 @@
     reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
 )]
 
-use fearless_simd::{Simd, SimdBase, f64x4};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::matrix::{diagonals, inverse_of_one_less, product};
 use super::table::{Diagonals, TABLE};
@@ -165,7 +165,7 @@ impl Plan {
         if (half, slope) != (self.half, self.slope) {
             self.half = half;
             self.slope = slope;
-            self.solve(simd);
+            self.solve();
         } else if frequency == self.frequency {
             return;
         }
@@ -182,8 +182,15 @@ impl Plan {
         self.turn_end = sine_and_cosine(simd, 2.0 * half * frequency);
     }
 
+    /// Works out the matrices, with the instructions of every processor: that is rare, and so one
+    /// copy of the code serves all levels.
+    #[inline(never)]
+    fn solve(&mut self) {
+        dispatch!(Level::baseline(), simd => self.solve_with(simd));
+    }
+
     #[inline(always)]
-    fn solve<S: Simd>(&mut self, simd: S) {
+    fn solve_with<S: Simd>(&mut self, simd: S) {
         let Plan { half, slope, .. } = *self;
         let square = half * half;
         let table = &TABLE;
