@@ -49,6 +49,7 @@ def test_the_first_click_moves(si_path):
 @pytest.mark.parametrize("name", ["A_si_dc_step", "D_kv_step", "K_force_step_stack", "L_permittivity_step"])
 def test_scenes_of_the_reference(si_path, name):
     start, rows = scene(name)
+    start["lambda_max"] = 5.0  # beyond it the permittivity of one of them vanishes
     with Actuator(si_path) as actuator:
         actuator.start(start)
         time = 0.0

@@ -44,9 +44,28 @@ impl Host {
 
     /// A co-simulation with these values, begun.
     pub fn begun(values: &[(&str, f64)]) -> Host {
-        let mut host = Host::initializing(Interface::CoSimulation, values);
-        host.instance.exit_initialization().expect("a start");
-        host
+        Host::initializing(Interface::CoSimulation, values).started()
+    }
+
+    /// The same, with this tolerance.
+    pub fn begun_with(tolerance: f64, values: &[(&str, f64)]) -> Host {
+        let mut host = Host {
+            instance: Instance::of(Interface::CoSimulation),
+            time: 0.0,
+        };
+        let experiment = host.instance.setup_experiment(Some(tolerance), 0.0, None);
+        experiment.expect("an experiment");
+        host.instance.enter_initialization();
+        for (name, value) in values {
+            host.set(name, *value)
+                .unwrap_or_else(|fault| panic!("{fault:?}"));
+        }
+        host.started()
+    }
+
+    fn started(mut self) -> Host {
+        self.instance.exit_initialization().expect("a start");
+        self
     }
 
     pub fn set(&mut self, name: &str, value: f64) -> Result<(), Fault> {

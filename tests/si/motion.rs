@@ -246,13 +246,14 @@ fn a_changed_parameter_keeps_the_state() {
 /// Saved in the middle and gone on with in another instance: the same bits.
 #[test]
 fn saved_instances_go_on_bit_for_bit() {
-    for name in SCENES {
+    for (name, recorded) in SCENES.iter().flat_map(|name| [(name, 1.0), (name, 0.0)]) {
         let file = read(name);
-        let mut host = begun(&file, &[("record_extremes", 1.0), ("lambda_max", 5.0)]);
+        let settings = [("record_extremes", recorded), ("lambda_max", 5.0)];
+        let mut host = begun(&file, &settings);
         let end = number(&file["rows"][10]["t_s"]);
         host.follow(0.31 * end, 0.07 * end);
         let bytes = host.instance.save(Vec::new()).expect("bytes");
-        let mut other = begun(&file, &[("record_extremes", 1.0), ("lambda_max", 5.0)]);
+        let mut other = begun(&file, &settings);
         other.instance.restore(&bytes).expect("a state");
         other.time = host.time;
         for _ in 0..7 {
@@ -387,17 +388,20 @@ fn si_units_and_nondimensional_numbers_give_the_same_motion() {
 
     let scales = Scales::of(&SiDevice::sheet(303e3, 1100.0, 2.8, [10e-6, 100e-6]));
     let (time, volts, newtons) = (scales.time.value(), scales.voltage, scales.force);
-    let mut si = Host::begun(&[
+    let settings = [
         ("voltage", 0.4 * volts),
         ("V_ac", 0.2 * volts),
         ("f_ac", 0.1471 / (std::f64::consts::TAU * time)),
         ("force", 0.05 * newtons),
         ("lambda_dot_start", 0.01 / time),
-    ]);
+    ];
+    // So tight that where the two choose other steps, by a rounding of time, is not seen.
+    let tolerance = 1e-13;
+    let mut si = Host::begun_with(tolerance, &settings);
     let surface = 303e3 * 10e-6;
     let mut plain = nondimensional::Instance::new();
     plain
-        .setup_experiment(None, 0.0, None)
+        .setup_experiment(Some(tolerance), 0.0, None)
         .expect("an experiment");
     plain.enter_initialization();
     let reference = |name: &str| nondimensional::value_reference(name).expect(name);
@@ -428,7 +432,7 @@ fn si_units_and_nondimensional_numbers_give_the_same_motion() {
             .expect("values");
         let ours = [si.get("lambda"), si.get("lambda_dot") * time];
         for (ours, theirs) in ours.into_iter().zip(theirs) {
-            assert!((ours - theirs).abs() < 2e-12, "step {k}: {ours} {theirs}");
+            assert!((ours - theirs).abs() < 2e-13, "step {k}: {ours} {theirs}");
         }
     }
 }

@@ -30,7 +30,8 @@ impl Trajectory {
             && self.index < self.pieces.len().max(1)
             && inside(&self.now)
             && self.find(self.now, self.index) == self.index
-            && inside(&self.recorded)
+            && self.recorded.is_finite()
+            && (self.extremes.is_none() || inside(&self.recorded))
             && self.first_turn.iter().all(inside)
             && self
                 .stop
