@@ -104,7 +104,9 @@ def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order, prestress=0,
         for series, (p, q) in ((V2, (V, V)), (L2, (L, L)), (L3, (L, L2)), (L5, (L2, L3))):
             series.append(product(p, q, k))
         M.append(2 * U6[k] + (c if k == 0 else 0))
-        force = (prestress if k == 0 else 0) + 6 * product(U7, V2, k) + U5[k] - a1 * L[k] - a3 * L3[k] + product(voltage, L3, k) - a5 * L5[k]
+        force = 6 * product(U7, V2, k) + U5[k] - a1 * L[k] - a3 * L3[k] + product(voltage, L3, k) - a5 * L5[k]
+        if k == 0:
+            force += prestress
         A.append((force - (mp.fdot(M[1 : k + 1], A[k - 1 :: -1]) if k else 0)) / M[0])
         V.append(A[k] / (k + 1))
         L.append(V[k] / (k + 1))

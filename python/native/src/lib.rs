@@ -29,7 +29,7 @@ const KNOWN_NAMES: &CStr =
 /// Scenes that a thread follows at a time: enough that all SIMD lanes are busy nearly always.
 const CHUNK: usize = 128;
 
-/// The numbers of one scene, in the order of [`SCENE_NAMES`].
+/// The numbers of one scene, in the order of `SCENE_NAMES`.
 pub type SceneRow = [f64; 13];
 
 /// The parameters of an experiment in the order of [`KNOWN_NAMES`].
