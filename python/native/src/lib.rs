@@ -32,10 +32,10 @@ const CHUNK: usize = 128;
 /// The numbers of one scene, in the order of `SCENE_NAMES`.
 pub type SceneRow = [f64; 13];
 
-/// The parameters of an experiment in the order of [`KNOWN_NAMES`].
+/// The parameters of an experiment in the order of `KNOWN_NAMES`.
 pub type Knowns = [f64; 9];
 
-/// A stretch, then its derivatives in the order of [`KNOWN_NAMES`].
+/// A stretch, then its derivatives in the order of `KNOWN_NAMES`.
 pub type SampleRow = [f64; 10];
 
 /// What became of a scene.
