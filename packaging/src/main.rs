@@ -74,7 +74,7 @@ struct Arguments {
 enum Verb {
     /// Pack the FMU into target/fmu
     Pack,
-    /// Write each modelDescription/<FMU>.xml
+    /// Write the description of each FMU into modelDescription
     Describe {
         /// Write nothing, fail if the checked-in file differs
         #[arg(long)]
