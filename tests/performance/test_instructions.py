@@ -54,7 +54,7 @@ def instructions(tmp_path_factory):
     headers = Path(fmpy.__file__).parent / "c-code"
     flags = ["-target", "x86_64-linux-gnu.2.17", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{headers}"]
     subprocess.run([*ZIG, "cc", *flags, HERE / "patterns.c", "-o", program, "-ldl"], check=True)
-    description = fmpy.read_model_description(str(packed_fmu()), validate=False)
+    description = fmpy.read_model_description(str(packed_fmu()))
     references = [f"{variable.name}={variable.valueReference}" for variable in description.modelVariables]
 
     def count(pattern: str) -> float:

@@ -26,9 +26,23 @@ pub struct Host {
 impl Host {
     /// An instance in initialization mode with these values.
     pub fn initializing(interface: Interface, values: &[(&str, f64)]) -> Host {
+        Host::with(interface, None, values)
+    }
+
+    /// A co-simulation with these values, begun.
+    pub fn begun(values: &[(&str, f64)]) -> Host {
+        Host::with(Interface::CoSimulation, None, values).started()
+    }
+
+    /// A co-simulation with this tolerance and these values, begun.
+    pub fn begun_with(tolerance: f64, values: &[(&str, f64)]) -> Host {
+        Host::with(Interface::CoSimulation, Some(tolerance), values).started()
+    }
+
+    fn with(interface: Interface, tolerance: Option<f64>, values: &[(&str, f64)]) -> Host {
         let mut instance = Instance::of(interface);
         instance
-            .setup_experiment(None, 0.0, None)
+            .setup_experiment(tolerance, 0.0, None)
             .expect("an experiment");
         instance.enter_initialization();
         let mut host = Host {
@@ -40,27 +54,6 @@ impl Host {
                 .unwrap_or_else(|fault| panic!("{fault:?}"));
         }
         host
-    }
-
-    /// A co-simulation with these values, begun.
-    pub fn begun(values: &[(&str, f64)]) -> Host {
-        Host::initializing(Interface::CoSimulation, values).started()
-    }
-
-    /// The same, with this tolerance.
-    pub fn begun_with(tolerance: f64, values: &[(&str, f64)]) -> Host {
-        let mut host = Host {
-            instance: Instance::of(Interface::CoSimulation),
-            time: 0.0,
-        };
-        let experiment = host.instance.setup_experiment(Some(tolerance), 0.0, None);
-        experiment.expect("an experiment");
-        host.instance.enter_initialization();
-        for (name, value) in values {
-            host.set(name, *value)
-                .unwrap_or_else(|fault| panic!("{fault:?}"));
-        }
-        host.started()
     }
 
     fn started(mut self) -> Host {
