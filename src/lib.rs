@@ -12,21 +12,22 @@
 //! 6. [`model`]: what a model has to say; [`variables`]: what a table of variables is made of;
 //! 7. [`nondimensional`]: the model of the paper and its table;
 //! 8. [`description`]: a table as `modelDescription.xml`;
-//! 9. [`slave`]: phases, checks and communication steps of an instance;
-//! 10. `abi`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
+//! 9. [`instance`]: phases, checks and communication steps of an instance;
+//! 10. `fmi2`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
 //!
-//! Life of an instance: `fmi2Instantiate` makes a [`slave::Instance`] with the start values of the
-//! table. Setters change its [`scene::Scene`]. At the end of initialization a [`slave::Run`] begins
+//! Life of an instance: `fmi2Instantiate` makes a [`instance::Instance`] with the start values of the
+//! table. Setters change its [`scene::Scene`]. At the end of initialization a [`instance::Run`] begins
 //! the motion of the scene; each `fmi2DoStep` continues it. Getters compute a result through a
 //! [`model::View`]. `fmi2FreeInstance` frees everything.
 //!
 //! The paper is Akhil Pratap Singh, Gal Shmuel and Atul Kumar Sharma, *Nonlinear dynamics of
 //! miniaturized dielectric elastomer actuators with surface effects*.
 
-#[cfg(feature = "fmi")]
-pub mod abi;
 pub mod actuator;
 pub mod description;
+#[cfg(feature = "fmi")]
+pub mod fmi2;
+pub mod instance;
 pub mod model;
 pub mod nondimensional;
 pub mod pull_in;
@@ -34,7 +35,6 @@ pub mod scene;
 pub mod sensitivity;
 mod shortest;
 pub mod si;
-pub mod slave;
 pub mod solver;
 pub mod sweep;
 pub mod variables;

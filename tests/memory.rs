@@ -5,9 +5,9 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
-use dielectric_elastomer_actuator::slave::Type;
 
 /// The system's allocator, counted.
 struct Counting;

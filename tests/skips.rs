@@ -3,9 +3,9 @@
 //! Beside these: orbits, splitting of steps, saved states and extremes in
 //! `solver.rs`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
 
+use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::{VARIABLES, value_reference};
-use dielectric_elastomer_actuator::slave::Type;
 use dielectric_elastomer_actuator::variables::Kind;
 
 const STEP: f64 = 0.37;

@@ -76,15 +76,15 @@ def instantiate(folder: str | Path, description: ModelDescription, log: list[Log
         freeMemory=fmi2CallbackFreeMemoryTYPE(fmpy.free),
     )
     identifier = description.coSimulation.modelIdentifier
-    slave = FMU2Slave(
+    instance = FMU2Slave(
         guid=description.guid,
         modelIdentifier=identifier,
         unzipDirectory=str(folder),
         instanceName="actuator",
         libraryPath=_library(Path(folder), identifier),
     )
-    slave.instantiate(callbacks=callbacks, loggingOn=True)
-    return slave
+    instance.instantiate(callbacks=callbacks, loggingOn=True)
+    return instance
 
 
 def _library(folder: Path, identifier: str) -> str | None:
@@ -113,11 +113,11 @@ _ACCESS = {
 class Group:
     """Variables of one FMI type with their buffers laid out once, so that a step reads without allocating."""
 
-    def __init__(self, slave: FMU2Slave, access: Access, names: list[str], references: list[int]):
+    def __init__(self, instance: FMU2Slave, access: Access, names: list[str], references: list[int]):
         self.names = names
-        self._component = slave.component
-        self._getter = getattr(slave, "fmi2Get" + access.function)
-        self._setter = getattr(slave, "fmi2Set" + access.function)
+        self._component = instance.component
+        self._getter = getattr(instance, "fmi2Get" + access.function)
+        self._setter = getattr(instance, "fmi2Set" + access.function)
         self._references = (fmi2ValueReference * len(references))(*references)
         self.values = (access.c_type * len(references))()
 
@@ -152,7 +152,7 @@ class Variables:
         """How a variable is read and written."""
         return _ACCESS[self[name].type]
 
-    def grouped(self, slave: FMU2Slave, names: Iterable[str]) -> list[Group]:
+    def grouped(self, instance: FMU2Slave, names: Iterable[str]) -> list[Group]:
         """The names by FMI type, each group with its buffers; laid out once for each list of names."""
         names = tuple(names)
         if names not in self._groups:
@@ -160,7 +160,7 @@ class Variables:
             for name in names:
                 by_access.setdefault(self.access(name), []).append(name)
             self._groups[names] = [
-                Group(slave, access, group, [self.reference(name) for name in group])
+                Group(instance, access, group, [self.reference(name) for name in group])
                 for access, group in by_access.items()
             ]
         return self._groups[names]

@@ -195,7 +195,7 @@ impl Model for Nondimensional {
 const GUID: guid::Text = guid::of::<Nondimensional>();
 
 /// An instance of the nondimensional actuator.
-pub type Instance = crate::slave::Instance<Nondimensional>;
+pub type Instance = crate::instance::Instance<Nondimensional>;
 
 /// Value reference of a variable, by its name.
 #[must_use]

@@ -232,7 +232,7 @@ impl Model for Si {
 const GUID: guid::Text = guid::of::<Si>();
 
 /// An instance of the actuator in SI units.
-pub type Instance = crate::slave::Instance<Si>;
+pub type Instance = crate::instance::Instance<Si>;
 
 /// Value reference of a variable, by its name.
 #[must_use]

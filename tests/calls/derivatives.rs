@@ -33,7 +33,7 @@ fn directional(host: &Host, unknown: &str, known: &[&str], changes: &[f64]) -> f
     value
 }
 
-/// A slave at this time in the phase "initialization" or "stepping".
+/// An instance at this time in the phase "initialization" or "stepping".
 fn started(time: f64, phase: &str) -> Host {
     let host = Host::new();
     unsafe {

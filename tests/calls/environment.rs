@@ -160,9 +160,9 @@ fn model_exchange(environment: u32) -> Vec<u64> {
 
 #[test]
 fn results_do_not_depend_on_the_environment() {
-    let (slave, exchange) = (co_simulation(DEFAULT), model_exchange(DEFAULT));
+    let (instance, exchange) = (co_simulation(DEFAULT), model_exchange(DEFAULT));
     for (what, environment) in ENVIRONMENTS {
-        assert_eq!(co_simulation(environment), slave, "{what}");
+        assert_eq!(co_simulation(environment), instance, "{what}");
         assert_eq!(model_exchange(environment), exchange, "{what}");
     }
 }

@@ -66,11 +66,11 @@ fn a_host_that_integrates_gets_the_motion_of_the_co_simulation() {
         ("phi_ac", 0.2),
         ("omega_ac", 0.9),
     ];
-    let slave = Host::in_phase("stepping");
+    let instance = Host::in_phase("stepping");
     for (name, value) in settings {
-        assert_eq!(slave.set(name, value), OK);
+        assert_eq!(instance.set(name, value), OK);
     }
-    assert_eq!(slave.step(0.0, 10.0), OK);
+    assert_eq!(instance.step(0.0, 10.0), OK);
     let error = |count: u32| {
         let host = Host::in_phase_of(EXCHANGE, "event");
         for (name, value) in settings {
@@ -91,7 +91,7 @@ fn a_host_that_integrates_gets_the_motion_of_the_co_simulation() {
         }
         host.put(10.0, x);
         assert_eq!(host.get("lambda"), x[0]);
-        (x[0] - slave.get("lambda")).abs()
+        (x[0] - instance.get("lambda")).abs()
     };
     let (coarse, fine) = (error(200), error(400));
     assert!(

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// A slave under an alternating voltage, whose extremes are recorded where the window
+/// An instance under an alternating voltage, whose extremes are recorded where the window
 /// is not 0 or the Boolean is true.
 fn driven(boolean: bool, window: f64) -> Host {
     let host = Host::in_phase("initialization");

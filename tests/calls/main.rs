@@ -34,7 +34,7 @@ const WARNING: fmi2Status = fmi2Status_fmi2Warning;
 const DISCARD: fmi2Status = fmi2Status_fmi2Discard;
 
 impl Host {
-    /// A co-simulation slave in this phase.
+    /// A co-simulation instance in this phase.
     fn in_phase(phase: &str) -> Host {
         Host::in_phase_of(fmi2Type_fmi2CoSimulation, phase)
     }

@@ -65,7 +65,7 @@ pub enum Act {
     Null(u8),
 }
 
-/// Acts, each of the model-exchange instance (true) or the co-simulation slave.
+/// Acts, each of the model-exchange instance (true) or the co-simulation instance.
 pub type Script = Vec<(bool, Act)>;
 
 /// Plays a script.
@@ -102,7 +102,7 @@ pub fn seal(bytes: &mut [u8]) {
     bytes[CONTENTS - 4..CONTENTS].copy_from_slice(&checksum.to_le_bytes());
 }
 
-/// A slave, an instance for model exchange, and states, which both may be given.
+/// An instance, an instance for model exchange, and states, which both may be given.
 struct Stage {
     hosts: [Host; 2],
     states: [fmi2FMUstate; SLOTS as usize],

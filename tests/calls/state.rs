@@ -29,7 +29,7 @@ impl Host {
         }
     }
 
-    /// A slave ready to step, which records extremes or not.
+    /// An instance ready to step, which records extremes or not.
     fn recording(extremes: bool) -> Host {
         let host = Host::in_phase("initialization");
         let (c, record) = (host.component, i32::from(extremes));

@@ -41,10 +41,10 @@ def test_capabilities_are_declared(description):
         assert interface.canGetAndSetFMUstate and interface.canSerializeFMUstate
         assert interface.providesDirectionalDerivative
         assert not interface.canBeInstantiatedOnlyOncePerProcess
-    slave = description.coSimulation
-    assert slave.canHandleVariableCommunicationStepSize and slave.canInterpolateInputs
-    assert slave.maxOutputDerivativeOrder == 1
-    assert not slave.canRunAsynchronuously
+    instance = description.coSimulation
+    assert instance.canHandleVariableCommunicationStepSize and instance.canInterpolateInputs
+    assert instance.maxOutputDerivativeOrder == 1
+    assert not instance.canRunAsynchronuously
 
 
 def test_what_connects_is_real(description):

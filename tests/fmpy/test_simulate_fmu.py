@@ -93,16 +93,16 @@ def test_start_time_other_than_zero(fmu_path):
     assert shifted["lambda"] == pytest.approx(plain["lambda"], abs=1e-9)
 
 
-def run(slave, scene, reference_of, steps=100, step=0.37):
+def run(instance, scene, reference_of, steps=100, step=0.37):
     """A bare run after `reset` or instantiation: λ and dλ/dt at each communication point."""
-    slave.setupExperiment(startTime=0.0)
-    slave.setReal([reference_of[name] for name in scene], list(scene.values()))
-    slave.enterInitializationMode()
-    slave.exitInitializationMode()
+    instance.setupExperiment(startTime=0.0)
+    instance.setReal([reference_of[name] for name in scene], list(scene.values()))
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
     rows = []
     for k in range(steps):
-        slave.doStep(k * step, step)
-        rows.append(slave.getReal([reference_of["lambda"], reference_of["lambda_dot"]]))
+        instance.doStep(k * step, step)
+        rows.append(instance.getReal([reference_of["lambda"], reference_of["lambda_dot"]]))
     return rows
 
 
@@ -112,25 +112,25 @@ def run(slave, scene, reference_of, steps=100, step=0.37):
     ids=["straight away", "after a collapse", "after another scene"],
 )
 def test_reset_gives_the_same_run_bit_for_bit(instantiate, reference_of, between):
-    slave = instantiate()
+    instance = instantiate()
     scene = {**REFERENCE_SET, "phi": 0.6, "S": 0.5}
-    first = run(slave, scene, reference_of)
-    slave.reset()
+    first = run(instance, scene, reference_of)
+    instance.reset()
     if between:
-        run(slave, between, reference_of)
-        slave.reset()
-    assert run(slave, scene, reference_of) == first
+        run(instance, between, reference_of)
+        instance.reset()
+    assert run(instance, scene, reference_of) == first
     assert run(instantiate(), scene, reference_of) == first
 
 
 def test_reset_restores_every_start_value(instantiate, reference_of, description):
-    slave = instantiate()
+    instance = instantiate()
     declared = {v.name: float(v.start) for v in description.modelVariables if v.start is not None and v.type == "Real"}
-    run(slave, {"phi": 0.3, "gamma_s": 0.1, "c": 7.0, "lambda_start": 1.2, "lambda_max": 5.0}, reference_of)
-    slave.reset()
-    slave.setupExperiment(startTime=0.0)
-    slave.enterInitializationMode()
-    assert slave.getReal([reference_of[name] for name in declared]) == list(declared.values())
+    run(instance, {"phi": 0.3, "gamma_s": 0.1, "c": 7.0, "lambda_start": 1.2, "lambda_max": 5.0}, reference_of)
+    instance.reset()
+    instance.setupExperiment(startTime=0.0)
+    instance.enterInitializationMode()
+    assert instance.getReal([reference_of[name] for name in declared]) == list(declared.values())
 
 
 def test_two_instances_at_once_do_not_disturb_each_other(instantiate, reference_of):
@@ -138,16 +138,16 @@ def test_two_instances_at_once_do_not_disturb_each_other(instantiate, reference_
     alone = [run(instantiate(), scene, reference_of) for scene in scenes]
 
     pair = [instantiate(), instantiate()]
-    for slave, scene in zip(pair, scenes):
-        slave.setupExperiment(startTime=0.0)
-        slave.setReal([reference_of[name] for name in scene], list(scene.values()))
-        slave.enterInitializationMode()
-        slave.exitInitializationMode()
+    for instance, scene in zip(pair, scenes):
+        instance.setupExperiment(startTime=0.0)
+        instance.setReal([reference_of[name] for name in scene], list(scene.values()))
+        instance.enterInitializationMode()
+        instance.exitInitializationMode()
     together = [[], []]
     for k in range(100):
-        for slave, rows in zip(pair, together):
-            slave.doStep(k * 0.37, 0.37)
-            rows.append(slave.getReal([reference_of["lambda"], reference_of["lambda_dot"]]))
+        for instance, rows in zip(pair, together):
+            instance.doStep(k * 0.37, 0.37)
+            rows.append(instance.getReal([reference_of["lambda"], reference_of["lambda_dot"]]))
     assert together == alone
 
 
@@ -171,19 +171,19 @@ def test_terminate_ends_the_run_at_the_collapse(fmu_path, instantiate, reference
     assert ended == result["pull_in_time"][-1] and result["pulled_in"][-1]
     assert result["lambda"][-1] == pytest.approx(10.0, rel=1e-12)
 
-    slave = instantiate()
-    slave.setupExperiment(startTime=0.0, tolerance=allowed.TOLERANCE)
-    slave.setReal([reference_of["phi"]], [0.7])
-    slave.setInteger([reference_of["on_pull_in"]], [2])
-    slave.enterInitializationMode()
-    slave.exitInitializationMode()
+    instance = instantiate()
+    instance.setupExperiment(startTime=0.0, tolerance=allowed.TOLERANCE)
+    instance.setReal([reference_of["phi"]], [0.7])
+    instance.setInteger([reference_of["on_pull_in"]], [2])
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
     with pytest.raises(FMICallException) as refusal:
-        slave.doStep(0.0, 60.0)
+        instance.doStep(0.0, 60.0)
     assert refusal.value.status == fmi2Discard
-    assert slave.getBooleanStatus(fmi2Terminated) is True
-    assert slave.getRealStatus(fmi2LastSuccessfulTime) == pytest.approx(ended, abs=allowed.ESCAPE)
+    assert instance.getBooleanStatus(fmi2Terminated) is True
+    assert instance.getRealStatus(fmi2LastSuccessfulTime) == pytest.approx(ended, abs=allowed.ESCAPE)
     with pytest.raises(FMICallException):
-        slave.doStep(ended, 1.0)
+        instance.doStep(ended, 1.0)
 
 
 @pytest.mark.timeout(120)

@@ -20,24 +20,24 @@ READ = ("lambda", "lambda_dot", "lambda_ddot", "hamiltonian", "phi_total", "pull
 
 def started(instantiate, reference_of, scene, time):
     """An instance that has been stepped to `time` (a multiple of 0.37)."""
-    slave = instantiate()
-    slave.setupExperiment(startTime=0.0, tolerance=allowed.TOLERANCE)
-    slave.setReal([reference_of[name] for name in scene], list(scene.values()))
-    slave.enterInitializationMode()
-    slave.exitInitializationMode()
+    instance = instantiate()
+    instance.setupExperiment(startTime=0.0, tolerance=allowed.TOLERANCE)
+    instance.setReal([reference_of[name] for name in scene], list(scene.values()))
+    instance.enterInitializationMode()
+    instance.exitInitializationMode()
     for k in range(round(time / 0.37)):
-        slave.doStep(k * 0.37, 0.37)
-    return slave
+        instance.doStep(k * 0.37, 0.37)
+    return instance
 
 
-def follow(slave, reference_of, time, steps=60):
+def follow(instance, reference_of, time, steps=60):
     """What `steps` more steps bring, an input set at each seventh."""
     rows = []
     for k in range(steps):
         if k % 7 == 0:
-            slave.setReal([reference_of["S"]], [0.01 * k])
-        slave.doStep(time + k * 0.37, 0.37)
-        rows.append([value.hex() for value in slave.getReal([reference_of[name] for name in READ])])
+            instance.setReal([reference_of["S"]], [0.01 * k])
+        instance.doStep(time + k * 0.37, 0.37)
+        rows.append([value.hex() for value in instance.getReal([reference_of[name] for name in READ])])
     return rows
 
 
@@ -45,10 +45,10 @@ def follow(slave, reference_of, time, steps=60):
 def test_a_fresh_instance_goes_on_bit_for_bit(instantiate, reference_of, scene):
     """Without setupExperiment and initialization, as FMPy's `simulate_fmu(fmu_state=...)` does it."""
     time = 100 * 0.37
-    slave = started(instantiate, reference_of, scene, time)
-    state = slave.getFMUState()
-    saved = slave.serializeFMUState(state)
-    uninterrupted = follow(slave, reference_of, time)
+    instance = started(instantiate, reference_of, scene, time)
+    state = instance.getFMUState()
+    saved = instance.serializeFMUState(state)
+    uninterrupted = follow(instance, reference_of, time)
 
     fresh = instantiate()
     fresh_state = fresh.deSerializeFMUstate(saved)
@@ -56,9 +56,9 @@ def test_a_fresh_instance_goes_on_bit_for_bit(instantiate, reference_of, scene):
     fresh.freeFMUState(fresh_state)
     assert follow(fresh, reference_of, time) == uninterrupted
 
-    slave.setFMUState(state)
-    slave.freeFMUState(state)
-    assert follow(slave, reference_of, time) == uninterrupted
+    instance.setFMUState(state)
+    instance.freeFMUState(state)
+    assert follow(instance, reference_of, time) == uninterrupted
 
 
 OTHER_PROCESS = """
@@ -70,19 +70,19 @@ sys.path[:0] = {path!r}
 import test_state
 folder, saved, time = sys.argv[1], bytes.fromhex(sys.argv[2]), float(sys.argv[3])
 description = fmpy.read_model_description(folder)
-slave = instantiate(folder, description, [])
-slave.setFMUState(slave.deSerializeFMUstate(saved))
+instance = instantiate(folder, description, [])
+instance.setFMUState(instance.deSerializeFMUstate(saved))
 reference_of = {{v.name: v.valueReference for v in description.modelVariables}}
-print(json.dumps(test_state.follow(slave, reference_of, time)))
-slave.freeInstance()
+print(json.dumps(test_state.follow(instance, reference_of, time)))
+instance.freeInstance()
 """
 
 
 def test_a_fresh_process_goes_on_bit_for_bit(instantiate, reference_of, unpacked):
     time = 40 * 0.37
-    slave = started(instantiate, reference_of, SCENES["alternating voltage"], time)
-    saved = slave.serializeFMUState(slave.getFMUState())
-    uninterrupted = follow(slave, reference_of, time)
+    instance = started(instantiate, reference_of, SCENES["alternating voltage"], time)
+    saved = instance.serializeFMUState(instance.getFMUState())
+    uninterrupted = follow(instance, reference_of, time)
     program = OTHER_PROCESS.format(path=[entry for entry in sys.path if "tests" in entry or "studies" in entry])
     command = [sys.executable, "-c", program, unpacked, saved.hex(), str(time)]
     other = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -90,20 +90,20 @@ def test_a_fresh_process_goes_on_bit_for_bit(instantiate, reference_of, unpacked
 
 
 def test_states_are_small_and_damaged_ones_refused(instantiate, reference_of):
-    slave = started(instantiate, reference_of, SCENES["alternating voltage"], 37.0)
-    saved = slave.serializeFMUState(slave.getFMUState())
+    instance = started(instantiate, reference_of, SCENES["alternating voltage"], 37.0)
+    saved = instance.serializeFMUState(instance.getFMUState())
     assert len(saved) < 1024
-    before = slave.getReal([reference_of[name] for name in READ])
+    before = instance.getReal([reference_of[name] for name in READ])
     generator = np.random.default_rng(1)
     for _ in range(200):
         damaged = bytearray(saved)
         damaged[generator.integers(len(saved))] ^= 1 << generator.integers(8)
         with pytest.raises(FMICallException):
-            slave.deSerializeFMUstate(bytes(damaged))
+            instance.deSerializeFMUstate(bytes(damaged))
         with pytest.raises(FMICallException):
-            slave.deSerializeFMUstate(saved[: generator.integers(len(saved))])
-    assert slave.getReal([reference_of[name] for name in READ]) == before
-    assert slave.log[-1].status == 3 and "no state of this FMU" in slave.log[-1].text
+            instance.deSerializeFMUstate(saved[: generator.integers(len(saved))])
+    assert instance.getReal([reference_of[name] for name in READ]) == before
+    assert instance.log[-1].status == 3 and "no state of this FMU" in instance.log[-1].text
 
 
 def test_a_controller_may_look_ahead(instantiate, reference_of):
@@ -117,7 +117,7 @@ def test_a_controller_may_look_ahead(instantiate, reference_of):
             trying.doStep(k * 0.37, 5.0, noSetFMUStatePriorToCurrentPoint=0)
             trying.setFMUState(state)
         trying.freeFMUState(state)
-        for slave in (plain, trying):
-            slave.doStep(k * 0.37, 0.37)
+        for instance in (plain, trying):
+            instance.doStep(k * 0.37, 0.37)
         references = [reference_of[name] for name in READ]
         assert plain.getReal(references) == trying.getReal(references)

@@ -34,24 +34,24 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("row {}", row.join(" "));
     };
 
-    let mut slave = fmu.instantiate_cs("actuator", false, false)?;
-    slave.setup_experiment(None, 0.0, None)?;
-    slave.enter_initialization_mode()?;
+    let mut instance = fmu.instantiate_cs("actuator", false, false)?;
+    instance.setup_experiment(None, 0.0, None)?;
+    instance.enter_initialization_mode()?;
     for setting in scene {
         let (name, value) = setting.split_once('=').ok_or("a setting is NAME=VALUE")?;
-        slave.set_real(&[reference(name)?], &[value.parse()?])?;
+        instance.set_real(&[reference(name)?], &[value.parse()?])?;
     }
-    slave.exit_initialization_mode()?;
-    slave.get_real(&outputs, &mut values)?;
+    instance.exit_initialization_mode()?;
+    instance.get_real(&outputs, &mut values)?;
     print(&values);
     for k in 0..steps {
         if k == switch {
-            slave.set_real(&[reference("phi")?], &[phi_then])?;
+            instance.set_real(&[reference("phi")?], &[phi_then])?;
         }
-        slave.do_step(f64::from(k) * step, step, true)?;
-        slave.get_real(&outputs, &mut values)?;
+        instance.do_step(f64::from(k) * step, step, true)?;
+        instance.get_real(&outputs, &mut values)?;
         print(&values);
     }
-    slave.terminate()?;
+    instance.terminate()?;
     Ok(())
 }

@@ -1,8 +1,8 @@
 //! A host of the actuator in SI units.
 
+use dielectric_elastomer_actuator::instance::{Fault, Interface, Type};
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::si::{Instance, Si, value_reference};
-use dielectric_elastomer_actuator::slave::{Fault, Interface, Type};
 use dielectric_elastomer_actuator::variables::{Kind, Variable};
 
 pub fn row(name: &str) -> (u32, &'static Variable<Si>) {

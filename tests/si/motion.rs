@@ -1,7 +1,7 @@
 //! The motion by the variables of the table.
 
 use crate::host::{Host, row};
-use dielectric_elastomer_actuator::slave::Interface;
+use dielectric_elastomer_actuator::instance::Interface;
 use serde_json::Value;
 
 fn read(name: &str) -> Value {
@@ -383,8 +383,8 @@ fn output_derivatives_are_those_of_the_motion() {
 #[test]
 fn si_units_and_nondimensional_numbers_give_the_same_motion() {
     use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
+    use dielectric_elastomer_actuator::instance::Type;
     use dielectric_elastomer_actuator::nondimensional;
-    use dielectric_elastomer_actuator::slave::Type;
 
     let scales = Scales::of(&SiDevice::sheet(303e3, 1100.0, 2.8, [10e-6, 100e-6]));
     let (time, volts, newtons) = (scales.time.value(), scales.voltage, scales.force);

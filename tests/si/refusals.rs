@@ -1,7 +1,7 @@
 //! What cannot be meant is refused with the variable, the value, the limit and what to do.
 
 use crate::host::Host;
-use dielectric_elastomer_actuator::slave::Interface;
+use dielectric_elastomer_actuator::instance::Interface;
 
 /// A wrong power of ten meets a limit, and the message names the unit.
 #[test]

@@ -8,8 +8,8 @@
 
 use std::fs::read_to_string;
 
+use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional::{Instance, value_reference};
-use dielectric_elastomer_actuator::slave::Type;
 
 use super::scenes::{KINDS, Kind, Scene};
 use super::*;

@@ -1,9 +1,9 @@
 //! Motions that go far: to infinity in finite time, and onto far orbits.
 
+use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
 use dielectric_elastomer_actuator::pull_in;
-use dielectric_elastomer_actuator::slave::Type;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 
@@ -65,25 +65,27 @@ fn the_stretch_becomes_infinite_when_it_should() {
 }
 
 #[test]
-fn the_slave_tells_the_time_of_an_escape() {
+fn the_instance_tells_the_time_of_an_escape() {
     for [voltage, aspect, time] in references() {
-        let mut slave = Instance::new();
+        let mut instance = Instance::new();
         let reference = |name| value_reference(name).expect("a variable");
         for (name, value) in [("phi", voltage), ("c", aspect), ("lambda_max", 1e6)] {
-            slave
+            instance
                 .set(Type::Real, &[reference(name)], |_| value)
                 .expect("a legal value");
         }
-        slave
+        instance
             .setup_experiment(Some(1e-12), 0.0, None)
             .expect("legal");
-        slave.enter_initialization();
-        slave.exit_initialization().expect("legal");
+        instance.enter_initialization();
+        instance.exit_initialization().expect("legal");
         for step in 0..700 {
-            slave.do_step(0.1 * f64::from(step), 0.1).expect("it holds");
+            instance
+                .do_step(0.1 * f64::from(step), 0.1)
+                .expect("it holds");
         }
         let mut at = f64::NAN;
-        slave
+        instance
             .get(Type::Real, &[reference("pull_in_time")], |_, t| at = t)
             .expect("a variable");
         let error = (at + rest(voltage, aspect, 1e6) - time).abs();

@@ -1,4 +1,4 @@
-//! The integrator and the slave where numbers are hardest: at pull-in, far out,
+//! The integrator and the instance where numbers are hardest: at pull-in, far out,
 //! in the corners of the parameters, over many and over very long steps.
 //!
 //! Each test says in its name what holds; every error that is allowed stands
@@ -12,10 +12,10 @@ mod escape;
 mod fold;
 mod independent;
 mod inputs;
+mod instance;
 mod levels;
 mod ranges;
 mod scenes;
-mod slave;
 mod steps;
 mod traps;
 mod varying;

@@ -9,8 +9,8 @@ use std::cell::RefCell;
 
 use dielectric_elastomer_actuator::actuator::Coefficients;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration, energy};
+use dielectric_elastomer_actuator::instance::{Event, Fault, Instance, Type};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
-use dielectric_elastomer_actuator::slave::{Event, Fault, Instance, Type};
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::variables::{Kind, value_reference};
 

@@ -11,8 +11,8 @@ use fmi::fmi2::binding::{
 
 use super::float_environment::FloatEnvironment;
 use crate::description::LOG_CATEGORIES;
+use crate::instance::{Call, Event, Fault, Instance, Severity};
 use crate::model::Model;
-use crate::slave::{Call, Event, Fault, Instance, Severity};
 
 /// Log categories by their place in [`LOG_CATEGORIES`].
 const EVENTS: usize = 0;
@@ -167,7 +167,7 @@ pub fn free<T>(owned: Box<T>) {
 }
 
 /// Runs `body` on the component behind the pointer, if the phase permits the
-/// call: the one way from C into the slave. No panic leaves it.
+/// call: the one way from C into the instance. No panic leaves it.
 #[inline(always)]
 pub fn guarded<M: Model>(
     component: fmi2Component,
@@ -219,9 +219,9 @@ pub fn guarded_but_for<M: Model>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::abi::*;
+    use crate::fmi2::*;
+    use crate::instance::Interface;
     use crate::nondimensional::Nondimensional;
-    use crate::slave::Interface;
 
     fn host() -> Host {
         let callbacks = fmi2CallbackFunctions {

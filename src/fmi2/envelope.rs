@@ -7,8 +7,8 @@
 
 use crc::{CRC_32_ISO_HDLC, Crc};
 
+use crate::instance::{Fault, STATE_LAYOUT};
 use crate::model::Model;
-use crate::slave::{Fault, STATE_LAYOUT};
 
 const MAGIC: &[u8] = b"DEA state";
 static CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);

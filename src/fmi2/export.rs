@@ -227,7 +227,7 @@ macro_rules! fmi2_functions {
 #[macro_export]
 macro_rules! export_fmi2 {
     ($model:ty) => {
-        use $crate::abi::c::*;
+        use $crate::fmi2::c::*;
 
         $crate::fmi2_functions!($crate::define_fmi2; $model);
     };
@@ -244,7 +244,7 @@ macro_rules! define_fmi2 {
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn $name($($argument: $of),*) $(-> $result)? {
             // SAFETY: the host's promise, passed on.
-            unsafe { $crate::abi::$name::<$model>($($argument),*) }
+            unsafe { $crate::fmi2::$name::<$model>($($argument),*) }
         }
 
         const _: $type = Some($name);

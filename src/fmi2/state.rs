@@ -5,8 +5,8 @@ use fmi::fmi2::binding::*;
 use super::component::{Component, guarded};
 use super::envelope;
 use super::pointers::{place, slice, slice_mut};
+use crate::instance::{Call, Fault};
 use crate::model::Model;
-use crate::slave::{Call, Fault};
 
 /// What stands behind an `fmi2FMUstate`: a saved instance.
 struct Saved {

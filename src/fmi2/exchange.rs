@@ -4,8 +4,8 @@ use fmi::fmi2::binding::*;
 
 use super::component::guarded;
 use super::pointers::{place, slice, slice_mut};
+use crate::instance::Call;
 use crate::model::Model;
-use crate::slave::Call;
 
 pub unsafe extern "C" fn fmi2EnterEventMode<M: Model>(c: fmi2Component) -> fmi2Status {
     guarded::<M>(c, "fmi2EnterEventMode", Call::EnterEventMode, |component| {
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn fmi2SetContinuousStates<M: Model>(
     })
 }
 
-/// Functions that fill an array of the host by a method of the slave.
+/// Functions that fill an array of the host by a method of the instance.
 macro_rules! fill {
     ($($function:ident($array:ident, $count:ident) by $method:ident as $call:ident;)*) => {$(
                 pub unsafe extern "C" fn $function<M: Model>(

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 
 use libc::c_char;
 
-use crate::slave::Fault;
+use crate::instance::Fault;
 
 fn null(what: &str) -> Fault {
     Fault::error(format!("{what} is a null pointer"))

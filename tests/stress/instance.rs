@@ -1,12 +1,12 @@
-//! Extreme but legal values through the slave, as a host would set them: never
+//! Extreme but legal values through the instance, as a host would set them: never
 //! NaN, never a hang; a step is done or says why not.
 
 use std::time::{Duration, Instant};
 
+use dielectric_elastomer_actuator::instance::{Severity, Type};
 use dielectric_elastomer_actuator::nondimensional::{
     Instance, Nondimensional, VARIABLES, value_reference,
 };
-use dielectric_elastomer_actuator::slave::{Severity, Type};
 use dielectric_elastomer_actuator::variables::{Access, Causality, Kind, Variability, Variable};
 
 use super::*;
@@ -60,7 +60,12 @@ fn value(random: &mut Random, variable: &Variable<Nondimensional>) -> f64 {
     chosen.clamp(min, max)
 }
 
-fn set_some(slave: &mut Instance, random: &mut Random, share: u64, stepping: bool) -> Vec<String> {
+fn set_some(
+    instance: &mut Instance,
+    random: &mut Random,
+    share: u64,
+    stepping: bool,
+) -> Vec<String> {
     let mut set = Vec::new();
     for (reference, variable) in VARIABLES.iter().enumerate() {
         let fixed = stepping && variable.variability == Variability::Fixed;
@@ -70,14 +75,14 @@ fn set_some(slave: &mut Instance, random: &mut Random, share: u64, stepping: boo
         }
         let value = value(random, variable);
         set.push(format!("{} = {value:e}", variable.name));
-        slave
+        instance
             .set(type_of(variable), &[reference as u32], |_| value)
             .expect("a legal value");
         if variable.causality == Causality::Input && random.bits().is_multiple_of(4) {
             let order = 1 + (random.bits() % 4) as i32;
             let slope = random.of(&[5e-324, -1e-3, 1.0, -1e3, 1e3]);
             set.push(format!("derivative {order} = {slope:e}"));
-            slave
+            instance
                 .set_input_derivatives(&[reference as u32], &[order], &[slope])
                 .expect("a legal derivative");
         }
@@ -86,9 +91,9 @@ fn set_some(slave: &mut Instance, random: &mut Random, share: u64, stepping: boo
 }
 
 /// Reads everything; no NaN, and a stretch between the limits.
-fn read(slave: &Instance, history: &[String]) {
+fn read(instance: &Instance, history: &[String]) {
     for (reference, variable) in VARIABLES.iter().enumerate() {
-        slave
+        instance
             .get(type_of(variable), &[reference as u32], |_, value| {
                 assert!(
                     !value.is_nan(),
@@ -111,38 +116,38 @@ fn legal_values_however_extreme_give_a_step_or_a_reason() {
     let (mut done, mut discarded) = (0, 0);
     for seed in 0..count {
         let mut random = Random(seed);
-        let mut slave = Instance::new();
+        let mut instance = Instance::new();
         let start_time = random.of(&[0.0, -1e9, 1e9, 5e-324]);
         let tolerance = random.of(&[1e-14, 1e-10, 1e-6, 1e-2]);
-        slave
+        instance
             .setup_experiment(Some(tolerance), start_time, None)
             .expect("legal");
-        slave.enter_initialization();
+        instance.enter_initialization();
         let mut history = vec![format!("seed {seed}, tolerance {tolerance:e}")];
         let share = random.of(&[1, 2, 4, 8]);
-        history.extend(set_some(&mut slave, &mut random, share, false));
-        read(&slave, &history);
-        if slave.exit_initialization().is_err() {
+        history.extend(set_some(&mut instance, &mut random, share, false));
+        read(&instance, &history);
+        if instance.exit_initialization().is_err() {
             continue;
         }
         for _ in 0..8 {
             let step = random.of(&[1e-9, 1e-6, 1e-3, 1e-2]);
-            let current = slave.last_successful_time();
+            let current = instance.last_successful_time();
             history.push(format!("step {step:e}"));
             let begin = Instant::now();
-            let outcome = slave.do_step(current, step);
+            let outcome = instance.do_step(current, step);
             let taken = begin.elapsed();
             if taken > slowest.0 {
                 slowest = (taken, history.clone());
             }
-            read(&slave, &history);
+            read(&instance, &history);
             match outcome {
                 Ok(_) => done += 1,
                 Err(fault) => {
                     assert_eq!(fault.severity, Severity::Discard, "{history:?}");
                     assert!(!fault.text.is_empty() && !fault.text.contains("NaN"));
                     discarded += 1;
-                    let reached = slave.last_successful_time();
+                    let reached = instance.last_successful_time();
                     assert!(
                         reached >= current && reached <= current + step * (1.0 + 1e-9),
                         "{reached:e} from {current:e}: {} {history:?}",
@@ -152,7 +157,7 @@ fn legal_values_however_extreme_give_a_step_or_a_reason() {
                 }
             }
             let share = random.of(&[1, 4, 1000]);
-            history.extend(set_some(&mut slave, &mut random, share, true));
+            history.extend(set_some(&mut instance, &mut random, share, true));
         }
     }
     assert!(
@@ -166,26 +171,26 @@ fn legal_values_however_extreme_give_a_step_or_a_reason() {
 #[test]
 fn a_step_that_is_too_long_for_its_drive_is_discarded_with_a_reason() {
     for (frequency, aspect) in [(1e3, 1e-3), (1e3, 1e12), (1.0, 1e-3), (1e-3, 1e-3)] {
-        let mut slave = Instance::new();
+        let mut instance = Instance::new();
         for (name, value) in [("c", aspect), ("phi_ac", 0.3), ("omega_ac", frequency)] {
             let reference = value_reference(name).expect("a variable");
-            slave
+            instance
                 .set(Type::Real, &[reference], |_| value)
                 .expect("a legal value");
         }
-        slave.setup_experiment(None, 0.0, None).expect("legal");
-        slave.enter_initialization();
-        slave.exit_initialization().expect("legal");
+        instance.setup_experiment(None, 0.0, None).expect("legal");
+        instance.enter_initialization();
+        instance.exit_initialization().expect("legal");
         let begin = Instant::now();
-        let outcome = slave.do_step(0.0, 1e6);
+        let outcome = instance.do_step(0.0, 1e6);
         let taken = begin.elapsed();
         let what = format!("ω = {frequency}, c = {aspect}: {outcome:?} in {taken:?}");
         if let Err(fault) = outcome {
             assert_eq!(fault.severity, Severity::Discard, "{what}");
             assert!(fault.text.contains("use shorter steps"), "{what}");
-            assert!(slave.last_successful_time() > 0.0, "{what}");
+            assert!(instance.last_successful_time() > 0.0, "{what}");
         }
-        read(&slave, std::slice::from_ref(&what));
+        read(&instance, std::slice::from_ref(&what));
         assert!(taken < allowed::SLOWEST_STEP, "{what}");
     }
 }
@@ -196,25 +201,28 @@ fn sums_of_many_steps_run_through() {
     let step = 1e-4;
     let count = if long() { 100_000_000 } else { 1_000_000 };
     for start in [0.0, -30.0] {
-        let mut slave = Instance::new();
+        let mut instance = Instance::new();
         let stop = start + f64::from(count) * step;
-        slave
+        instance
             .setup_experiment(None, start, Some(stop))
             .expect("legal");
-        slave.enter_initialization();
-        slave.set(Type::Real, &[0], |_| 0.5).expect("legal");
-        slave.exit_initialization().expect("legal");
+        instance.enter_initialization();
+        instance.set(Type::Real, &[0], |_| 0.5).expect("legal");
+        instance.exit_initialization().expect("legal");
         let mut time = start;
         for _ in 0..count {
-            slave.do_step(time, step).expect("a step");
+            instance.do_step(time, step).expect("a step");
             time += step;
         }
-        let deviation = (slave.last_successful_time() - time).abs();
+        let deviation = (instance.last_successful_time() - time).abs();
         assert_at_most(
             deviation,
             2e-14 * time.abs() + 1e-12,
             "deviation of the clock",
         );
-        assert!(slave.do_step(time, step).is_err(), "beyond the stop time");
+        assert!(
+            instance.do_step(time, step).is_err(),
+            "beyond the stop time"
+        );
     }
 }

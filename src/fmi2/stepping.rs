@@ -4,8 +4,8 @@ use fmi::fmi2::binding::*;
 
 use super::component::guarded;
 use super::pointers::{place, slice, slice_mut};
+use crate::instance::{Call, Fault};
 use crate::model::Model;
-use crate::slave::{Call, Fault};
 
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives<M: Model>(
     c: fmi2Component,

@@ -1,6 +1,6 @@
 //! The C functions of FMI 2.0 (`fmi2Functions.h`): the only room with unsafe
 //! code. Each function turns pointers into slices and delegates to one method
-//! of the slave, inside the guard of `component`.
+//! of the instance, inside the guard of `component`.
 //!
 //! Safety of all of them: the host owes what the standard says, that is,
 //! components from `fmi2Instantiate` that have not been freed and are used by
@@ -31,8 +31,8 @@ use std::ffi::CStr;
 use fmi::fmi2::binding::*;
 use libc::c_char;
 
+use crate::instance::{Call, Fault, Instance, Interface, Type};
 use crate::model::Model;
-use crate::slave::{Call, Fault, Instance, Interface, Type};
 use component::{Component, Host, free, guarded, guarded_but_for, instantiated};
 pub use exchange::*;
 pub use export::EXPORTED_NAMES;
