@@ -6,18 +6,18 @@
 //! 1. [`solver`]: integrators of second-order equations of motion;
 //! 2. [`actuator`]: the physics: equation of motion (Eq. 16 of the paper), energy, voltage;
 //! 3. [`pull_in`]: the voltages beyond which the actuator collapses;
-//! 4. [`scene`]: what a host sets; [`view`]: what a host reads;
-//! 5. [`sweep`]: many scenes at once; [`sensitivity`]: derivatives of a motion with respect to its
+//! 4. [`model`]: what a model has to say, and what its table of variables is made of;
+//! 5. [`nondimensional`]: the model of the paper: its table, what a host sets, what a host reads;
+//! 6. [`si`]: the model of the real actuator in SI units;
+//! 7. [`sweep`]: many scenes at once; [`sensitivity`]: derivatives of a motion with respect to its
 //!    parameters. Both need no host;
-//! 6. [`model`]: what a model has to say; [`variables`]: what a table of variables is made of;
-//! 7. [`nondimensional`]: the model of the paper and its table;
 //! 8. [`description`]: a table as `modelDescription.xml`;
 //! 9. [`instance`]: phases, checks and communication steps of an instance;
 //! 10. `fmi2`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
 //!
-//! Life of an instance: `fmi2Instantiate` makes a [`instance::Instance`] with the start values of the
-//! table. Setters change its [`scene::Scene`]. At the end of initialization a [`instance::Run`] begins
-//! the motion of the scene; each `fmi2DoStep` continues it. Getters compute a result through a
+//! Life of an instance: `fmi2Instantiate` makes an [`instance::Instance`] with the start values of
+//! the table. Setters change its scene, for example [`nondimensional::scene::Scene`]. At the end of
+//! initialization an [`instance::Run`] begins the motion of the scene; each `fmi2DoStep` continues it. Getters compute a result through a
 //! [`model::View`]. `fmi2FreeInstance` frees everything.
 //!
 //! The paper is Akhil Pratap Singh, Gal Shmuel and Atul Kumar Sharma, *Nonlinear dynamics of
@@ -31,11 +31,8 @@ pub mod instance;
 pub mod model;
 pub mod nondimensional;
 pub mod pull_in;
-pub mod scene;
 pub mod sensitivity;
 mod shortest;
 pub mod si;
 pub mod solver;
 pub mod sweep;
-pub mod variables;
-pub mod view;

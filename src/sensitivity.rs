@@ -9,7 +9,7 @@ use crate::actuator::coefficients::Coefficients;
 use crate::actuator::drive::Polynomial;
 use crate::actuator::motion::{self, Load};
 use crate::actuator::{Drive, Parameters};
-use crate::scene::Scene;
+use crate::nondimensional::scene::Scene;
 use crate::solver::double::Double;
 use crate::solver::jet::Dual;
 use crate::solver::limits::Limit;

@@ -2,7 +2,7 @@
 //! with their parameters in SIMD lanes.
 //!
 //! ```
-//! use dielectric_elastomer_actuator::scene::Scene;
+//! use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 //! use dielectric_elastomer_actuator::sweep;
 //!
 //! let mut scenes = [Scene::at_start(); 100];
@@ -18,7 +18,7 @@
 use fearless_simd::Level;
 
 use crate::actuator::Ensemble;
-use crate::scene::Scene;
+use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::ensemble::{self, Arrival, Motion};

@@ -2,11 +2,11 @@
 
 use dielectric_elastomer_actuator::description;
 use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::model::variables::{Causality, Kind, Variability, Variable};
 use dielectric_elastomer_actuator::nondimensional::{
     ALIASES, Nondimensional, VARIABLES, value_reference,
 };
 use dielectric_elastomer_actuator::si::Si;
-use dielectric_elastomer_actuator::variables::{Causality, Kind, Variability, Variable};
 use fmi::fmi2::schema::Fmi2ModelDescription;
 
 fn checked_in(path: &str) -> String {

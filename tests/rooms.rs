@@ -159,7 +159,7 @@ fn what_the_architecture_names_is_there() {
 }
 
 #[test]
-fn unsafe_code_stands_in_the_abi_only() {
+fn unsafe_code_stands_in_fmi2_only() {
     for file in sources() {
         assert!(
             room(&file) == "fmi2" || !read(&file).contains("unsafe {"),

@@ -2,7 +2,7 @@
 //! trajectory, and against a redundancy of the equation that is exact.
 
 use dielectric_elastomer_actuator::actuator::drive::Polynomial;
-use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sensitivity::{
     Experiment, Interruption, Known, Ramp, Sample, follow,
 };

@@ -4,9 +4,9 @@
 //! `solver.rs`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
 
 use dielectric_elastomer_actuator::instance::Type;
+use dielectric_elastomer_actuator::model::variables::Kind;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::{VARIABLES, value_reference};
-use dielectric_elastomer_actuator::variables::Kind;
 
 const STEP: f64 = 0.37;
 const STEPS: u32 = 400;

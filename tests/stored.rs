@@ -1,6 +1,6 @@
 //! Motions that are stored, and stored bytes that are none.
 
-use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 

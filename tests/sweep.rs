@@ -1,7 +1,7 @@
 //! Many scenes at once against the same scenes one by one.
 
 use dielectric_elastomer_actuator::actuator::Ensemble;
-use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::ensemble::{self, Motion};
 use dielectric_elastomer_actuator::solver::limits::Limit;

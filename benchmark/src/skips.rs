@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use dielectric_elastomer_actuator::actuator::motion::{Load, LocalMotion};
 use dielectric_elastomer_actuator::actuator::{Drive, Motion};
-use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::number::Number;

@@ -2,7 +2,7 @@
 
 use super::LOG_CATEGORIES;
 use crate::model::Model;
-use crate::variables::{Access, Kind, Variable};
+use crate::model::variables::{Access, Kind, Variable};
 
 /// `{8-4-4-4-12}` hexadecimal digits.
 pub type Text = [u8; 38];

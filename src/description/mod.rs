@@ -11,7 +11,7 @@ use schema::{
 use serde::Serialize;
 
 use crate::model::Model;
-use crate::variables::{
+use crate::model::variables::{
     self, Access, Alias, Causality, Dependencies, Kind, Unit, Variability, Variable,
     value_reference,
 };

@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
 use super::{Course, Event, Fault, Instance, check_time};
+use crate::model::variables::{Access, Kind};
 use crate::model::{AtLimit, Collapse, Model, Record};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
-use crate::variables::{Access, Kind};
 
 /// A host finds the crossing of a limit to a tolerance, from either side of it:
 /// closer than this part of the limit it has been reached.

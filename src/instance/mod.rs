@@ -21,10 +21,10 @@ pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
+use crate::model::variables::Access;
 use crate::model::{AtLimit, Model, Motion, Place, Record, View};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
-use crate::variables::Access;
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;

@@ -12,7 +12,7 @@
 
 use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE, check_time};
 use crate::model::Model;
-use crate::variables::Access;
+use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
 pub const LAYOUT: u16 = 6;

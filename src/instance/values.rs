@@ -5,8 +5,8 @@ use super::phase::Phase;
 use super::{Course, Fault, Instance};
 use crate::actuator::drive::Polynomial;
 use crate::model::Model;
+use crate::model::variables::{Access, Kind, Variability, Variable};
 use crate::shortest::Shortest;
-use crate::variables::{Access, Kind, Variability, Variable};
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,7 +2,9 @@
 //! physics behind it.
 
 pub(crate) mod recording;
+pub mod scene;
 mod table;
+pub mod view;
 
 pub use recording::Recording;
 pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
@@ -10,8 +12,10 @@ pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
 use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
+use crate::model::variables::{self, Alias, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, Motion, View};
-use crate::scene::Scene;
+use crate::nondimensional::scene::Scene;
+use crate::nondimensional::view::{Quantities, Sample};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
@@ -19,8 +23,6 @@ use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limit;
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
-use crate::variables::{self, Alias, Variable};
-use crate::view::{Quantities, Sample};
 
 /// The marker of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Nondimensional;
 use crate::model::Record;
-use crate::scene::Scene;
+use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;

@@ -2,12 +2,14 @@
 
 use super::Nondimensional;
 use crate::model::AtLimit;
-use crate::solver::number::Number;
-use crate::variables::rows::{UNDECLARED, depends, formula, positive, real, unlimited, value};
-use crate::variables::{
+use crate::model::variables::rows::{
+    UNDECLARED, depends, formula, positive, real, unlimited, value,
+};
+use crate::model::variables::{
     Alias, Causality, Derivatives, Enumeration, Kind, Variability, Variable, checked, units,
 };
-use crate::view::Quantities;
+use crate::nondimensional::view::Quantities;
+use crate::solver::number::Number;
 
 use Causality::{Local, Output};
 use Variability::{Fixed, Tunable};

@@ -4,10 +4,10 @@ use super::sample::{Basis, Sample, own};
 use super::scene::{BRANCHES, SiScene, SiState, place};
 use super::{Si, SiRecord};
 use crate::actuator::device::equation::Load;
+use crate::model::variables::{Access, Kind};
 use crate::model::{Direction, Model, Place, View};
 use crate::solver::coupled::{MOST_STATES, Stage};
 use crate::solver::jet::Dual;
-use crate::variables::{Access, Kind};
 
 impl View<'_, Si> {
     /// The present as it changes in a direction: exact for inputs and states; for parameters, on

@@ -18,6 +18,7 @@ pub use table::VARIABLES;
 use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
+use crate::model::variables::{self, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
@@ -25,7 +26,6 @@ use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limit;
 use crate::solver::number::Number;
-use crate::variables::{self, Variable};
 
 /// The marker of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

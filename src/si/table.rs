@@ -5,8 +5,8 @@ mod ports;
 mod values;
 
 use super::Si;
-use crate::variables::rows::real;
-use crate::variables::{Variable, checked, units};
+use crate::model::variables::rows::real;
+use crate::model::variables::{Variable, checked, units};
 
 use parameters::{CHOICES, NUMBERS};
 use ports::PORTS;

@@ -201,7 +201,7 @@ fn what_changes_at_events_only_has_derivatives_of_zero() {
 /// The declared dependencies are those that there are, no more and no fewer.
 #[test]
 fn dependencies_are_those_declared() {
-    use dielectric_elastomer_actuator::variables::Access;
+    use dielectric_elastomer_actuator::model::variables::Access;
     for (phase, state_is_known) in [("initialization", false), ("stepping", true)] {
         let host = started(1.5, phase);
         for unknown in &VARIABLES {

@@ -5,7 +5,7 @@
 
 use std::arch::asm;
 
-use dielectric_elastomer_actuator::variables::{Access, Kind};
+use dielectric_elastomer_actuator::model::variables::{Access, Kind};
 
 use super::*;
 

@@ -62,12 +62,13 @@ fn everything_can_be_read_at_once_and_after_setting_without_a_step() {
     for phase in ["initialization", "stepping"] {
         let host = Host::in_phase(phase);
         assert_eq!(host.set("phi", 0.3), OK);
-        let real = |row: &&dielectric_elastomer_actuator::variables::Variable<Nondimensional>| {
-            matches!(
-                row.kind,
-                dielectric_elastomer_actuator::variables::Kind::Real { .. }
-            )
-        };
+        let real =
+            |row: &&dielectric_elastomer_actuator::model::variables::Variable<Nondimensional>| {
+                matches!(
+                    row.kind,
+                    dielectric_elastomer_actuator::model::variables::Kind::Real { .. }
+                )
+            };
         let references: Vec<u32> = VARIABLES
             .iter()
             .filter(real)

@@ -6,8 +6,8 @@ use std::ptr::{null, null_mut};
 
 use DielectricElastomerActuator::*;
 use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::model::variables::{Access, Kind};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES, value_reference};
-use dielectric_elastomer_actuator::variables::{Access, Kind};
 use fmi::fmi2::binding::*;
 use serde::{Deserialize, Serialize};
 

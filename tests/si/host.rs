@@ -2,8 +2,8 @@
 
 use dielectric_elastomer_actuator::instance::{Fault, Interface, Type};
 use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::model::variables::{Kind, Variable};
 use dielectric_elastomer_actuator::si::{Instance, Si, value_reference};
-use dielectric_elastomer_actuator::variables::{Kind, Variable};
 
 pub fn row(name: &str) -> (u32, &'static Variable<Si>) {
     let reference = value_reference(name).unwrap_or_else(|| panic!("no variable {name}"));

@@ -4,10 +4,12 @@
 use std::time::{Duration, Instant};
 
 use dielectric_elastomer_actuator::instance::{Severity, Type};
+use dielectric_elastomer_actuator::model::variables::{
+    Access, Causality, Kind, Variability, Variable,
+};
 use dielectric_elastomer_actuator::nondimensional::{
     Instance, Nondimensional, VARIABLES, value_reference,
 };
-use dielectric_elastomer_actuator::variables::{Access, Causality, Kind, Variability, Variable};
 
 use super::*;
 

@@ -1,9 +1,9 @@
 //! The table of variables, from the variables themselves.
 
-use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
-use dielectric_elastomer_actuator::variables::{
+use dielectric_elastomer_actuator::model::variables::{
     Causality, Enumeration, Kind, Variability, Variable,
 };
+use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
 
 use super::escaped;
 

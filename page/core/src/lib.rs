@@ -10,9 +10,9 @@ use std::cell::RefCell;
 use dielectric_elastomer_actuator::actuator::Coefficients;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration, energy};
 use dielectric_elastomer_actuator::instance::{Event, Fault, Instance, Type};
+use dielectric_elastomer_actuator::model::variables::{Kind, value_reference};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::variables::{Kind, value_reference};
 
 /// Next to λ = 1 the stagnation curve is taken at this distance from it, where 0/0 is far enough.
 const NEAR_REST: f64 = 1e-5;

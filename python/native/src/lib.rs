@@ -11,7 +11,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
 use dielectric_elastomer_actuator::actuator::drive::Polynomial;
-use dielectric_elastomer_actuator::scene::Scene;
+use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sensitivity::{self, Experiment, Interruption, Ramp};
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep;

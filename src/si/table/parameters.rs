@@ -3,10 +3,10 @@
 use super::Row;
 use crate::actuator::device::Source;
 use crate::model::AtLimit;
+use crate::model::variables::Variability::{Fixed, Tunable};
+use crate::model::variables::rows::real;
+use crate::model::variables::{Enumeration, Kind, units};
 use crate::si::OnBreakdown;
-use crate::variables::Variability::{Fixed, Tunable};
-use crate::variables::rows::real;
-use crate::variables::{Enumeration, Kind, units};
 
 /// Rows of numbers: name and meaning; when it may be set, its limits and typical size, its start;
 /// its unit and what to tell who has typed a value in another one; its place in the scene.

@@ -1,9 +1,9 @@
 //! The states, their derivatives, and what both ports give.
 
 use super::Row;
-use crate::variables::Causality::{Local, Output};
-use crate::variables::rows::{depends, formula, real, unlimited};
-use crate::variables::{Dependencies, units};
+use crate::model::variables::Causality::{Local, Output};
+use crate::model::variables::rows::{depends, formula, real, unlimited};
+use crate::model::variables::{Dependencies, units};
 
 /// Of what depends on nearly everything.
 const ALL: Dependencies = depends(

@@ -1,11 +1,11 @@
 //! Energies, thresholds, margins, and what has happened.
 
 use super::Row;
+use crate::model::variables::Causality::{Local, Output};
+use crate::model::variables::rows::{UNDECLARED, depends, positive, real, unlimited, value};
+use crate::model::variables::{Derivatives, Kind, units};
 use crate::si::Si;
 use crate::solver::number::Number;
-use crate::variables::Causality::{Local, Output};
-use crate::variables::rows::{UNDECLARED, depends, positive, real, unlimited, value};
-use crate::variables::{Derivatives, Kind, units};
 
 /// A flag as a number.
 fn flag(holds: bool) -> f64 {

@@ -3,16 +3,18 @@
 //! A model is a table of variables and the physics behind it. Everything that concerns FMI is
 //! written once, over this trait: adding a model adds nothing there.
 
+pub mod variables;
+
 use std::fmt::Debug;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
+use self::variables::{Alias, Variable};
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress};
-use crate::variables::{Alias, Variable};
 
 /// A model: a marker type that names its table and its physics.
 pub trait Model: Copy + Debug + PartialEq + 'static {
@@ -67,7 +69,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// A scene with each variable at its start value.
     #[must_use]
     fn at_start() -> Self::Scene {
-        crate::variables::at_start::<Self>(Self::blank())
+        crate::model::variables::at_start::<Self>(Self::blank())
     }
 
     /// Whether the inputs are polynomials in finite numbers.

@@ -5,7 +5,7 @@ use crate::actuator::Coefficients;
 use crate::actuator::motion::{self, Load};
 use crate::model::Direction;
 use crate::nondimensional::Nondimensional;
-use crate::scene::Scene;
+use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};

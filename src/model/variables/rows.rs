@@ -13,7 +13,7 @@ macro_rules! formula {
     ($quantity:ident) => {
         (
             |view| view.$quantity(),
-            Some($crate::variables::Derivatives {
+            Some($crate::model::variables::Derivatives {
                 along: |sample| sample.$quantity(),
                 from_now_on: |sample| sample.$quantity(),
             }),
