@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::{Course, Event, Fault, Instance, check_time};
 use crate::model::variables::{Access, Kind};
-use crate::model::{AtLimit, Collapse, Model, Record};
+use crate::model::{AtLimit, Collapse, Model, Recording};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -24,7 +24,7 @@ pub struct Exchange<M: Model> {
     /// The limit at which the host's last step has ended, where the simulation is to end there:
     /// hosts read for the last time before they handle the event that tells them so.
     pub(super) arrival: Option<Collapse<M::Limit>>,
-    pub(super) record: M::Record,
+    pub(super) record: Recording,
 }
 
 /// What an event has changed.
@@ -38,6 +38,11 @@ pub struct Update {
     pub event: Option<Event>,
 }
 
+/// A recording of the extremes from this state on, where the scene asks for one.
+pub(super) fn recording<M: Model>(scene: &M::Scene, time: Double, state: &M::State) -> Recording {
+    Recording::begin(M::records_extremes(scene), time, M::second_order(state))
+}
+
 impl<M: Model> Exchange<M> {
     pub(super) fn new(scene: &M::Scene, time: Double) -> Exchange<M> {
         let state = M::start(scene);
@@ -46,13 +51,13 @@ impl<M: Model> Exchange<M> {
             state,
             collapse: None,
             arrival: None,
-            record: M::Record::begin(scene, time, state),
+            record: recording::<M>(scene, time, &state),
         }
     }
 
     /// Starts what is recorded anew, at the present.
     pub(super) fn record_anew(&mut self, scene: &M::Scene) {
-        self.record = M::Record::begin(scene, self.time, self.state);
+        self.record = recording::<M>(scene, self.time, &self.state);
     }
 
     /// Whether the numbers can be those of a motion.
@@ -61,7 +66,7 @@ impl<M: Model> Exchange<M> {
         M::is_finite(&self.state)
             && self.time.is_finite()
             && collapses.all(|collapse| collapse.time.is_finite())
-            && self.record.is_valid(scene)
+            && self.record.is_valid(M::records_extremes(scene))
     }
 }
 
@@ -88,7 +93,7 @@ impl<M: Model> Instance<M> {
             ..
         }) = &mut self.course
         {
-            record.include(&self.scene, *time, *state);
+            record.include(M::limits(&self.scene), *time, M::second_order(state));
         }
     }
 
@@ -147,7 +152,9 @@ impl<M: Model> Instance<M> {
         let scene = self.scene.clone();
         let exchange = self.exchange()?;
         let (time, state) = (exchange.time, exchange.state);
-        exchange.record.include_step(&scene, time, state);
+        exchange
+            .record
+            .include_step(M::limits(&scene), time, M::second_order(&state));
         if exchange.collapse.is_some() {
             return Ok(false);
         }

@@ -22,7 +22,7 @@ pub use values::Type;
 use serde::{Deserialize, Serialize};
 
 use crate::model::variables::Access;
-use crate::model::{AtLimit, Model, Motion, Place, Record, View};
+use crate::model::{AtLimit, Model, Motion, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -163,7 +163,7 @@ impl<M: Model> Instance<M> {
             Course::Ahead => {
                 // The drive counts from the start time.
                 let (state, time) = (M::start(scene), M::inputs_since(scene));
-                let record = M::Record::begin(scene, *time, state);
+                let record = exchange::recording::<M>(scene, *time, &state);
                 (Place::At { state, record }, time, None)
             }
         };

@@ -3,7 +3,10 @@
 //! A model is a table of variables and the physics behind it. Everything that concerns FMI is
 //! written once, over this trait: adding a model adds nothing there.
 
+mod recording;
 pub mod variables;
+
+pub use recording::Recording;
 
 use std::fmt::Debug;
 
@@ -11,8 +14,10 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use self::variables::{Alias, Variable};
+use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
+use crate::solver::limits::Limits;
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress};
 
@@ -53,9 +58,6 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// The motion, where the model integrates it itself.
     type Motion: Motion<Self>;
-
-    /// What is recorded of a motion that the host integrates.
-    type Record: Record<Self>;
 
     /// Where a motion ends.
     type Limit: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
@@ -120,6 +122,15 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// The component of a state that is the `place`-th of [`Model::STATES`].
     fn component(state: &mut Self::State, place: usize) -> Option<&mut f64>;
 
+    /// Position and rate of the second-order equation.
+    fn second_order(state: &Self::State) -> State;
+
+    /// The positions between which the motion is followed.
+    fn limits(scene: &Self::Scene) -> Limits;
+
+    /// Whether the extremes of the position are recorded.
+    fn records_extremes(scene: &Self::Scene) -> bool;
+
     /// The number of the window over which something is recorded; a change of it starts the
     /// records anew.
     fn window(_scene: &Self::Scene) -> f64 {
@@ -180,21 +191,6 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     fn whereabouts(&self) -> String;
 }
 
-/// What is recorded of a motion that the host integrates, in steps of its own.
-pub trait Record<M: Model>: Copy + Debug + PartialEq + Serialize + DeserializeOwned {
-    /// Records from this state on.
-    fn begin(scene: &M::Scene, time: Double, state: M::State) -> Self;
-
-    /// Records the host's step that has come to this state.
-    fn include_step(&mut self, scene: &M::Scene, time: Double, state: M::State);
-
-    /// Records this state alone: it may have jumped.
-    fn include(&mut self, scene: &M::Scene, time: Double, state: M::State);
-
-    /// Whether the numbers fit together as a record of the scene.
-    fn is_valid(&self, scene: &M::Scene) -> bool;
-}
-
 /// What a host does with a model at first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Experiment {
@@ -229,7 +225,7 @@ pub enum Place<'a, M: Model> {
         /// The state.
         state: M::State,
         /// What is recorded of the motion to it.
-        record: M::Record,
+        record: Recording,
     },
     /// The present of this motion.
     On(&'a M::Motion),

@@ -1,12 +1,10 @@
 //! The nondimensional actuator of the paper as a [`Model`]: its table of variables and the
 //! physics behind it.
 
-pub(crate) mod recording;
 pub mod scene;
 mod table;
 pub mod view;
 
-pub use recording::Recording;
 pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
 
 use serde::{Deserialize, Serialize};
@@ -20,7 +18,7 @@ use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
-use crate::solver::limits::Limit;
+use crate::solver::limits::{Limit, Limits};
 use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 
@@ -49,7 +47,6 @@ impl Model for Nondimensional {
     type Scene = Scene;
     type State = State;
     type Motion = Trajectory;
-    type Record = Recording;
     type Limit = Limit;
     type Sample<N: Number> = Sample<N>;
 
@@ -125,16 +122,7 @@ impl Model for Nondimensional {
         state: &State,
         tolerance: f64,
     ) -> Option<Limit> {
-        let &State { position, rate } = state;
-        let limits = scene.limits;
-        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
-        if position >= limits.upper * (1.0 - margin(rate)) {
-            Some(Limit::Upper)
-        } else if position <= limits.lower * (1.0 + margin(-rate)) {
-            Some(Limit::Lower)
-        } else {
-            None
-        }
+        scene.limits.reached(state, tolerance)
     }
 
     /// λ − λ_min and λ_max − λ, of which one vanishes where the actuator collapses; once it has,
@@ -159,6 +147,18 @@ impl Model for Nondimensional {
         [&mut state.position, &mut state.rate]
             .into_iter()
             .nth(place)
+    }
+
+    fn second_order(state: &State) -> State {
+        *state
+    }
+
+    fn limits(scene: &Scene) -> Limits {
+        scene.limits
+    }
+
+    fn records_extremes(scene: &Scene) -> bool {
+        scene.records_extremes()
     }
 
     #[inline]

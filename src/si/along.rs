@@ -1,11 +1,11 @@
 //! The quantities as they change in a direction.
 
+use super::Si;
 use super::sample::{Basis, Sample, own};
 use super::scene::{BRANCHES, SiScene, SiState, place};
-use super::{Si, SiRecord};
 use crate::actuator::device::equation::Load;
 use crate::model::variables::{Access, Kind};
-use crate::model::{Direction, Model, Place, View};
+use crate::model::{Direction, Model, Place, Recording, View};
 use crate::solver::coupled::{MOST_STATES, Stage};
 use crate::solver::jet::Dual;
 
@@ -88,6 +88,8 @@ impl View<'_, Si> {
             return None;
         }
         let step = 1e-3 / size;
+        let state = self.state();
+        let record = Recording::begin(false, *self.time, state.motion);
         let at = |steps: f64| {
             let mut scene = self.scene.clone();
             for (get, set) in numbers() {
@@ -99,10 +101,7 @@ impl View<'_, Si> {
             }
             View::<Si> {
                 scene: &scene,
-                place: Place::At {
-                    state: self.state(),
-                    record: SiRecord::default(),
-                },
+                place: Place::At { state, record },
                 ..*self
             }
             .sample()

@@ -3,14 +3,12 @@
 
 mod along;
 mod motion;
-mod record;
 mod sample;
 mod scene;
 mod table;
 mod view;
 
 pub use motion::SiMotion;
-pub use record::SiRecord;
 pub use sample::Sample;
 pub use scene::{OnBreakdown, SiScene, SiState};
 pub use table::VARIABLES;
@@ -19,12 +17,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
 use crate::model::variables::{self, Variable};
-use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
+use crate::model::{AtLimit, Direction, Experiment, Model, Place, Recording, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, TimeSeries};
-use crate::solver::limits::Limit;
+use crate::solver::limits::{Limit, Limits};
 use crate::solver::number::Number;
 
 /// The marker of the model.
@@ -63,7 +61,6 @@ impl Model for Si {
     type Scene = SiScene;
     type State = SiState;
     type Motion = SiMotion;
-    type Record = SiRecord;
     type Limit = SiLimit;
     type Sample<N: Number> = Sample<N>;
 
@@ -140,20 +137,14 @@ impl Model for Si {
         state: &SiState,
         tolerance: f64,
     ) -> Option<SiLimit> {
-        let State { position, rate } = state.motion;
-        let limits = scene.limits;
-        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
-        if position >= limits.upper * (1.0 - margin(rate)) {
-            return Some(SiLimit::Stretch(Limit::Upper));
-        }
-        if position <= limits.lower * (1.0 + margin(-rate)) {
-            return Some(SiLimit::Stretch(Limit::Lower));
+        if let Some(limit) = scene.limits.reached(&state.motion, tolerance) {
+            return Some(SiLimit::Stretch(limit));
         }
         let view = View::<Si> {
             scene,
             place: Place::At {
                 state: *state,
-                record: SiRecord::default(),
+                record: Recording::begin(false, *time, state.motion),
             },
             time,
             collapse: None,
@@ -199,6 +190,18 @@ impl Model for Si {
         [position, rate, charge, first, second, third]
             .into_iter()
             .nth(place)
+    }
+
+    fn second_order(state: &SiState) -> State {
+        state.motion
+    }
+
+    fn limits(scene: &SiScene) -> Limits {
+        scene.limits
+    }
+
+    fn records_extremes(scene: &SiScene) -> bool {
+        scene.records_extremes()
     }
 
     fn window(scene: &SiScene) -> f64 {

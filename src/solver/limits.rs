@@ -32,6 +32,21 @@ impl Limits {
         self.lower < self.upper && self.lower.is_finite() && self.upper.is_finite()
     }
 
+    /// The limit that lies less than `tolerance`, relative to it, before a state that moves towards
+    /// it, or behind the state.
+    #[must_use]
+    pub fn reached(&self, state: &State, tolerance: f64) -> Option<Limit> {
+        let &State { position, rate } = state;
+        let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
+        if position >= self.upper * (1.0 - margin(rate)) {
+            Some(Limit::Upper)
+        } else if position <= self.lower * (1.0 + margin(-rate)) {
+            Some(Limit::Lower)
+        } else {
+            None
+        }
+    }
+
     /// The limit that the motion first meets in the segment, and the offset
     /// at which it does, to rounding. `reach` is the range that holds the motion.
     #[must_use]

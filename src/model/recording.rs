@@ -1,13 +1,11 @@
-//! The extremes of a motion that the host integrates.
+//! The extremes of a motion that the host integrates, in steps of its own.
 
 use serde::{Deserialize, Serialize};
 
-use super::Nondimensional;
-use crate::model::Record;
-use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
+use crate::solver::limits::Limits;
 
 /// The extremes up to a completed step of the host's integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,31 +16,35 @@ pub struct Recording {
     state: State,
 }
 
-impl Record<Nondimensional> for Recording {
-    fn begin(scene: &Scene, time: Double, state: State) -> Recording {
+impl Recording {
+    /// Records from this state on, or nothing.
+    #[must_use]
+    pub fn begin(recorded: bool, time: Double, state: State) -> Recording {
         Recording {
-            extremes: scene
-                .records_extremes()
-                .then(|| Extremes::at(state.position)),
+            extremes: recorded.then(|| Extremes::at(state.position)),
             time,
             state,
         }
     }
 
-    /// Inside the step the motion is that on the cubic through both ends.
-    fn include_step(&mut self, scene: &Scene, time: Double, state: State) {
+    /// Records the host's step that has come to this state. Inside the step the motion is that on
+    /// the cubic through both ends.
+    pub fn include_step(&mut self, limits: Limits, time: Double, state: State) {
         if let Some(turn) = turn_between(self.state, state, time.since(self.time)) {
-            self.include_position(scene, turn);
+            self.include_position(limits, turn);
         }
-        self.include(scene, time, state);
+        self.include(limits, time, state);
     }
 
-    fn include(&mut self, scene: &Scene, time: Double, state: State) {
-        self.include_position(scene, state.position);
+    /// Records this state alone: it may have jumped.
+    pub fn include(&mut self, limits: Limits, time: Double, state: State) {
+        self.include_position(limits, state.position);
         (self.time, self.state) = (time, state);
     }
 
-    fn is_valid(&self, scene: &Scene) -> bool {
+    /// Whether the numbers fit together as those of a recording, or of none.
+    #[must_use]
+    pub fn is_valid(&self, recorded: bool) -> bool {
         let State { position, rate } = self.state;
         let extremes = self.extremes.is_none_or(|Extremes { lowest, highest }| {
             lowest <= highest && lowest.is_finite() && highest.is_finite()
@@ -51,22 +53,20 @@ impl Record<Nondimensional> for Recording {
             && rate.is_finite()
             && self.time.is_finite()
             && extremes
-            && self.extremes.is_some() == scene.records_extremes()
+            && self.extremes.is_some() == recorded
     }
-}
 
-impl Recording {
     /// A host may step beyond the limits before it handles the event there.
-    fn include_position(&mut self, scene: &Scene, position: f64) {
+    fn include_position(&mut self, limits: Limits, position: f64) {
         if let Some(extremes) = &mut self.extremes {
-            extremes.include(position.clamp(scene.limits.lower, scene.limits.upper));
+            extremes.include(position.clamp(limits.lower, limits.upper));
         }
     }
 }
 
 /// The position at which a motion turns on its way between two states that lie
 /// `time` apart, on the cubic through both with their rates.
-pub(crate) fn turn_between(from: State, to: State, time: f64) -> Option<f64> {
+fn turn_between(from: State, to: State, time: f64) -> Option<f64> {
     let [first, last] = [from.rate, to.rate].map(|rate| rate * time);
     if first * last >= 0.0 {
         return None;
