@@ -37,6 +37,25 @@ def test_the_bill_lists_what_is_linked_in_and_nothing_that_only_builds(bill):
         assert crate["purl"].startswith(f"pkg:cargo/{crate['name']}@{crate['version'].partition('+')[0]}")
 
 
+def test_the_bill_says_what_is_in_each_part(bill):
+    parts = {entry["ref"]: set(entry.get("dependsOn", ())) for entry in json.loads(bill)["dependencies"]}
+    fmus = {"DielectricElastomerActuator.fmu", "DielectricElastomerActuatorSI.fmu"}
+    assert parts["dielectric-elastomer-actuator@1.2.3"] == {
+        *fmus, "dielectric_actuator_native", "dielectric_elastomer_actuator.html", "wheel"
+    }  # fmt: skip
+    assert fmus | {"dielectric_actuator_native", "pypi:FMPy"} <= parts["wheel"]
+
+    def crates(part):
+        return {ref.partition("@")[0].partition(":")[2] for ref in parts[part] if ref.startswith("cargo:")}
+
+    for fmu in fmus:
+        assert {"fmi", "nalgebra"} <= crates(fmu) and "rayon" not in crates(fmu) and "llvm-libunwind" in parts[fmu]
+    assert {"rayon", "nalgebra"} <= crates("dielectric_actuator_native")
+    page = parts["dielectric_elastomer_actuator.html"]
+    assert any(ref.startswith("npm:uplot@") for ref in page) and "llvm-libunwind" not in page
+    assert "nalgebra" in crates("dielectric_elastomer_actuator.html")
+
+
 def test_the_bill_is_the_same_each_time(bill):
     assert release.bill_of_materials(release.cargo_metadata(), "1.2.3") == bill
     assert "timestamp" not in bill
