@@ -114,7 +114,7 @@ help:
 	@echo 'make wheel           build the Python package for every platform into target/wheel'
 	@echo 'make release         gather a release in target/releases (docs/releasing.md)'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
-	@echo 'make guide           write the user'"'"'s guide to target/guide/index.html'
+	@echo 'make guide           write the user'"'"'s guide to target/guide'
 	@echo 'make page            write the live page, in which the actuator moves, to target/page/index.html'
 	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
 	@echo 'make clean           remove target and .venv'

@@ -1,8 +1,9 @@
-//! The user's guide: every page of `docs/guide`, in the order of the file names, as one HTML file that
-//! needs no other: formulas as MathML, figures inside, the table of variables from the variables themselves.
+//! The user's guide: every page of `docs/guide` as one HTML file that needs no other: formulas as MathML,
+//! figures inside, the tables of variables from the variables themselves. In the guide of an FMU the page with
+//! its variables comes first, then the others in the order of the file names.
 
 mod code;
-mod variables;
+pub mod variables;
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,14 +17,16 @@ use pulldown_cmark::{
 use pulldown_latex::config::{DisplayMode, RenderConfig};
 use pulldown_latex::{Parser as Formula, Storage, push_mathml};
 
-use crate::{icon, page};
+use crate::{FMUS, Fmu, icon, page};
 use code::Block;
 
 /// Where the pages are, relative to the workspace.
 pub const PAGES: &str = "docs/guide";
 
-/// What the table of variables takes the place of.
-const VARIABLES_HERE: &str = "<!-- variables -->";
+/// What the table of variables of an FMU takes the place of.
+fn variables_here(fmu: &Fmu) -> String {
+    format!("<!-- variables of {} -->", fmu.identifier)
+}
 
 const STYLE: &str = include_str!("guide.css");
 
@@ -43,18 +46,20 @@ struct Page {
     html: String,
     /// The places that a link may lead to.
     places: BTreeSet<String>,
+    /// The FMUs whose variables it shows.
+    fmus: Vec<&'static str>,
     /// Where its links inside the guide lead.
     links: Vec<String>,
     /// Its blocks of code, whose places are marked by [`code_here`].
     code: Vec<Block>,
 }
 
-/// The guide as HTML, opened by a link to the live page where there is one beside it.
+/// The guide of an FMU as HTML, opened by a link to the live page where there is one beside it.
 ///
 /// # Errors
-/// If there is no page, or a page has a formula, link or figure that cannot be followed: the page and
-/// the culprit are named.
-pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
+/// If no page shows the variables of the FMU, or a page has a formula, link or figure that cannot be
+/// followed: the page and the culprit are named.
+pub fn html(workspace: &Path, fmu: &Fmu, with_page: bool) -> Result<String> {
     let folder = workspace.join(PAGES);
     let mut files = Vec::new();
     for entry in
@@ -66,11 +71,6 @@ pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
         }
     }
     files.sort();
-    ensure!(
-        !files.is_empty(),
-        "there is no page in {}",
-        folder.display()
-    );
     let mut pages: Vec<Page> = files
         .iter()
         .map(|file| page(file).with_context(|| format!("in the page {}", file.display())))
@@ -86,8 +86,13 @@ pub fn html(workspace: &Path, with_page: bool) -> Result<String> {
         }
     }
     colour(&mut pages)?;
+    let own = pages
+        .iter()
+        .position(|page| page.fmus.contains(&fmu.identifier))
+        .with_context(|| format!("no page has the line {}", variables_here(fmu)))?;
+    pages[..=own].rotate_right(1);
     let picture = embedded(&workspace.join(PICTURE))?;
-    document(&pages, &picture, with_page)
+    document(&pages, fmu, &picture, with_page)
 }
 
 /// Puts all blocks of code, coloured, in their places.
@@ -108,7 +113,7 @@ fn colour(pages: &mut [Page]) -> Result<()> {
 }
 
 /// What the FMU is, with a picture, then the pages below one another, with links to each before them.
-fn document(pages: &[Page], picture: &str, with_page: bool) -> Result<String> {
+fn document(pages: &[Page], fmu: &Fmu, picture: &str, with_page: bool) -> Result<String> {
     let live = if with_page {
         format!(
             "<p class=\"live\"><a href=\"{}\">See it move in your browser</a></p>\n",
@@ -131,13 +136,15 @@ fn document(pages: &[Page], picture: &str, with_page: bool) -> Result<String> {
          <meta name=\"color-scheme\" content=\"light dark\">\n\
          <title>Dielectric elastomer actuator {version}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <header>\n<img class=\"icon\" alt=\"\" src=\"data:image/png;base64,{icon}\">\n\
-         <h1>Dielectric elastomer actuator</h1>\n<p class=\"version\">FMI 2.0 unit, version {version}</p>\n\
-         <p>A soft capacitor: a voltage squeezes the membrane between two electrodes, and it spreads. The FMU \
-         computes how it moves, from voltage and prestress to stretch, with surface effects, pull-in and an \
-         alternating voltage built in, to the rounding of its numbers at any communication step.</p>\n\
+         <h1>Dielectric elastomer actuator</h1>\n<p class=\"version\">FMI 2.0 unit <code>{identifier}</code>, \
+         version {version}</p>\n\
+         <p>A soft capacitor: a voltage squeezes the membrane between two electrodes, and it spreads. {about} \
+         It is accurate at any communication step.</p>\n\
          <img alt=\"A film at rest, swinging at 715 V and snapping at 716 V: membranes from the side, and \
          their width over time\" src=\"{picture}\">\n{live}</header>\n\
          <nav>\n{entries}</nav>\n<main>\n{sections}</main>\n</body>\n</html>\n",
+        identifier = fmu.identifier,
+        about = fmu.about,
         version = env!("CARGO_PKG_VERSION"),
         icon = BASE64_STANDARD.encode(icon::png()?),
     ))
@@ -156,6 +163,7 @@ fn page(file: &Path) -> Result<Page> {
     let mut page = Page {
         title: name.clone(),
         places: BTreeSet::new(),
+        fmus: Vec::new(),
         links: Vec::new(),
         code: Vec::new(),
         html: String::new(),
@@ -171,8 +179,13 @@ fn page(file: &Path) -> Result<Page> {
                 "a formula is not closed, or a line of it begins like a list: {}",
                 text.trim()
             ),
-            Event::Html(html) if html.trim() == VARIABLES_HERE => {
-                *event = Event::Html(variables::table().into());
+            Event::Html(html) if html.starts_with("<!-- variables") => {
+                let fmu = FMUS
+                    .iter()
+                    .find(|fmu| html.trim() == variables_here(fmu))
+                    .with_context(|| format!("there is no FMU for {}", html.trim()))?;
+                page.fmus.push(fmu.identifier);
+                *event = Event::Html((fmu.variables)().into());
             }
             Event::Text(text) if unbroken(text).is_some() => {
                 *event = Event::InlineHtml(unbroken(text).unwrap_or_default().into());
@@ -399,7 +412,7 @@ mod tests {
     #[test]
     fn numbers_stay_whole_and_tables_scroll() -> Result<()> {
         let page = rendered(
-            "# T\n\n| a < b |\n|---|\n| at 2.9e-15, or `1e-3` & more |\n\n<!-- variables -->\n",
+            "# T\n\n| a < b |\n|---|\n| at 2.9e-15, or `1e-3` & more |\n\n<!-- variables of DielectricElastomerActuator -->\n",
         )?;
         assert!(
             page.html.contains(
@@ -435,12 +448,19 @@ mod tests {
     }
 
     #[test]
-    fn the_guide_of_the_workspace_stands_alone() -> Result<()> {
-        let guide = html(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), true)?;
-        assert!(guide.contains("<math") && guide.contains("src=\"data:image/"));
-        assert!(
-            !guide.contains("src=\"http") && !guide.contains("<link") && !guide.contains("<script")
-        );
+    fn the_guide_of_each_fmu_stands_alone_and_begins_with_it() -> Result<()> {
+        for fmu in FMUS {
+            let guide = html(&Path::new(env!("CARGO_MANIFEST_DIR")).join(".."), fmu, true)?;
+            assert!(guide.contains("<math") && guide.contains("src=\"data:image/"));
+            assert!(
+                !guide.contains("src=\"http")
+                    && !guide.contains("<link")
+                    && !guide.contains("<script")
+            );
+            let first = guide.split("</section>").next().unwrap_or_default();
+            assert!(first.contains(&(fmu.variables)()), "{}", fmu.identifier);
+        }
+        assert!(rendered("# T\n\n<!-- variables of Nothing -->\n").is_err());
         Ok(())
     }
 }

@@ -37,15 +37,21 @@ use zig::Zig;
 struct Fmu {
     /// The name of the FMU, of the binary in it and of the member's library.
     identifier: &'static str,
+    /// What it does, for the head of its guide.
+    about: &'static str,
     /// Writes its model description.
     xml: fn() -> String,
+    /// Writes the table of its variables for the guide.
+    variables: fn() -> String,
 }
 
 impl Fmu {
-    const fn of<M: Model>() -> Fmu {
+    const fn of<M: Model>(about: &'static str) -> Fmu {
         Fmu {
             identifier: M::IDENTIFIER,
+            about,
             xml: description::xml::<M>,
+            variables: guide::variables::table::<M>,
         }
     }
 
@@ -56,7 +62,17 @@ impl Fmu {
 }
 
 /// Every FMU that is shipped.
-const FMUS: &[Fmu] = &[Fmu::of::<Nondimensional>(), Fmu::of::<Si>()];
+const FMUS: &[Fmu] = &[
+    Fmu::of::<Nondimensional>(
+        "This FMU computes how it moves in nondimensional quantities, from voltage and prestress to stretch, \
+         with surface effects, pull-in and an alternating voltage built in.",
+    ),
+    Fmu::of::<Si>(
+        "This FMU computes how it moves in SI units, from volts and newtons to coulombs and metres, with an \
+         electrical and a mechanical port, losses, stiffening, pull-in, breakdown and an alternating voltage \
+         built in.",
+    ),
+];
 
 /// Build, check and pack the FMU
 #[derive(Parser)]
@@ -80,7 +96,7 @@ enum Verb {
         #[arg(long)]
         check: bool,
     },
-    /// Write the user's guide to target/guide
+    /// Write the user's guide of each FMU to target/guide
     Guide,
     /// Build the library that carries the core into Python, in target/native
     Native,
@@ -125,8 +141,7 @@ fn pack(all: bool) -> Result<()> {
     let mut shared = Entries::new();
     shared.insert("model.png".into(), icon::png()?);
     let page = page::html(&project);
-    let guide = guide::html(project.workspace_root.as_std_path(), page.is_ok())?;
-    shared.insert("documentation/index.html".into(), guide.into());
+    let with_page = page.is_ok();
     let without_page = match page {
         Ok(page) => {
             shared.insert(format!("documentation/{}", page::NAME), page.into());
@@ -137,7 +152,10 @@ fn pack(all: bool) -> Result<()> {
     let core = library::root_package(&project)?;
     licences::add(&mut shared, &project, &built[0].1, &zig, &platforms, core)?;
     for fmu in FMUS {
-        pack_one(fmu, shared.clone(), &project, &zig, &built)?;
+        let mut entries = shared.clone();
+        let guide = guide::html(project.workspace_root.as_std_path(), fmu, with_page)?;
+        entries.insert("documentation/index.html".into(), guide.into());
+        pack_one(fmu, entries, &project, &zig, &built)?;
     }
     print!("{missing}{without_page}");
     Ok(())
@@ -264,19 +282,21 @@ fn native(all: bool) -> Result<()> {
     Ok(())
 }
 
-/// Writes the user's guide, with the live page beside it where there is one.
+/// Writes the user's guide of each FMU, with the live page beside it where there is one.
 fn write_guide() -> Result<()> {
     let project = project()?;
-    let folder = project.target_directory.join("guide");
-    let path = folder.join("index.html");
     let page = fs::read(project.target_directory.join("page/index.html")).ok();
-    let text = guide::html(project.workspace_root.as_std_path(), page.is_some())?;
-    fs::create_dir_all(&folder)?;
-    fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
-    if let Some(page) = page {
-        fs::write(folder.join(page::NAME), page)?;
+    for fmu in FMUS {
+        let folder = project.target_directory.join("guide").join(fmu.identifier);
+        let path = folder.join("index.html");
+        let text = guide::html(project.workspace_root.as_std_path(), fmu, page.is_some())?;
+        fs::create_dir_all(&folder)?;
+        fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
+        if let Some(page) = &page {
+            fs::write(folder.join(page::NAME), page)?;
+        }
+        println!("{path}");
     }
-    println!("{path}");
     Ok(())
 }
 

@@ -16,7 +16,16 @@ def pytest_addoption(parser):
 @pytest.fixture(scope="session")
 def fmu_path(request) -> Path:
     """The packed FMU; a test that needs it fails where there is none."""
-    path = request.config.getoption("--fmu")
+    return there(request.config.getoption("--fmu"))
+
+
+@pytest.fixture(scope="session")
+def si_path(fmu_path) -> Path:
+    """The packed FMU in SI units, which lies beside the other."""
+    return there(fmu_path.with_name("DielectricElastomerActuatorSI.fmu"))
+
+
+def there(path: Path) -> Path:
     if not path.is_file():
         pytest.fail(f"no FMU at {path}: build and pack it first (make fmu)", pytrace=False)
     return path

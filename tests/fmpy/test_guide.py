@@ -49,7 +49,8 @@ for number, code in enumerate(json.load(open("programs.json"))):
         print(number, os.waitstatus_to_exitcode(status))
         continue
     os.chdir(f"{number}")
-    os.symlink(sys.argv[1], "DielectricElastomerActuator.fmu")
+    for path in sys.argv[1:]:
+        os.symlink(path, os.path.basename(path))
     output = os.open("output", os.O_WRONLY | os.O_CREAT)
     os.dup2(output, 1), os.dup2(output, 2)
     failed = 0
@@ -65,12 +66,12 @@ for number, code in enumerate(json.load(open("programs.json"))):
 
 
 @pytest.fixture(scope="module")
-def outcomes(fmu_path, tmp_path_factory):
+def outcomes(fmu_path, si_path, tmp_path_factory):
     """Exit code and output of every program, in their order."""
     folder = tmp_path_factory.mktemp("guide")
     (folder / "programs.json").write_text(json.dumps([program.values[0] for program in programs()]))
     done = subprocess.run(
-        [sys.executable, "-u", "-W", "error::DeprecationWarning", "-c", RUNNER, fmu_path.resolve()],
+        [sys.executable, "-u", "-W", "error::DeprecationWarning", "-c", RUNNER, fmu_path.resolve(), si_path.resolve()],
         cwd=folder,
         env={**os.environ, "TMPDIR": str(folder)},
         capture_output=True,

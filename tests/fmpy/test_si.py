@@ -17,14 +17,6 @@ PLAIN = {"gamma_s": 0.0, "tau_s": 0.0, "E_s": 0.0, "voltage": 0.0}
 NAMES = {"epsr": "eps_r", "n": "n_layers", "V": "voltage", "P": "force", "k": "k_load", "m": "m_load", "l_k": "l_load"}
 
 
-@pytest.fixture(scope="module")
-def si_path(fmu_path) -> Path:
-    path = fmu_path.with_name("DielectricElastomerActuatorSI.fmu")
-    if not path.is_file():
-        pytest.fail(f"no FMU at {path}: build and pack it first (make fmu)", pytrace=False)
-    return path
-
-
 def scene(name: str) -> tuple[dict[str, float], np.ndarray]:
     """The start values of a scene, and rows t, stretch."""
     content = json.loads((REFERENCE / f"{name}.json").read_text())

@@ -1,18 +1,18 @@
-//! The table of variables, from the variables themselves.
+//! The table of variables of a model, from the variables themselves.
 
+use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{
     Causality, Enumeration, Kind, Variability, Variable,
 };
-use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
 
 use super::escaped;
 
 /// The table as HTML.
-pub fn table() -> String {
-    let rows: String = VARIABLES
+pub fn table<M: Model>() -> String {
+    let rows: String = M::VARIABLES
         .iter()
         .map(row)
-        .chain(ALIASES.iter().map(|alias| {
+        .chain(M::ALIASES.iter().map(|alias| {
             format!(
                 "<tr><td><code>{}</code></td><td>further name of <code>{}</code></td>\
                  <td></td><td></td><td></td><td>{}</td></tr>\n",
@@ -29,7 +29,7 @@ pub fn table() -> String {
     )
 }
 
-fn row(variable: &Variable<Nondimensional>) -> String {
+fn row<M: Model>(variable: &Variable<M>) -> String {
     let kind = match (variable.causality, variable.variability) {
         (Causality::Parameter, Variability::Tunable) => "tunable parameter",
         (Causality::Parameter, _) => "parameter",
@@ -95,16 +95,26 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dielectric_elastomer_actuator::nondimensional::Nondimensional;
+    use dielectric_elastomer_actuator::si::Si;
 
-    #[test]
-    fn every_variable_is_there_with_what_may_be_set() {
-        let table = table();
-        for variable in &VARIABLES {
+    fn table_with_every_variable<M: Model>() -> String {
+        let table = table::<M>();
+        for variable in M::VARIABLES {
             let cell = format!("<code>{}</code></td>", variable.name);
             assert!(table.contains(&cell), "{}", variable.name);
         }
         assert!(table.contains("true, false") && table.contains("1: <code>hold</code>"));
+        table
+    }
+
+    #[test]
+    fn every_variable_is_there_with_what_may_be_set() {
+        let table = table_with_every_variable::<Nondimensional>();
         assert!(table.contains("<td>rad</td>"));
         assert!(table.contains("<code>stretch</code></td><td>further name of <code>lambda</code>"));
+        let table = table_with_every_variable::<Si>();
+        assert!(table.contains("<td>V/m</td>") && table.contains("3: <code>charge</code>"));
+        assert!(!table.contains("<code>phi</code>"));
     }
 }
