@@ -1,10 +1,12 @@
 //! A host: an instance and what it told.
 
 use std::ffi::{CStr, CString, c_char, c_void};
-use std::ptr::null;
+use std::marker::PhantomData;
+use std::ptr::{null, null_mut};
 use std::sync::Mutex;
 
 use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::fmi2;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::nondimensional::Nondimensional;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
@@ -43,10 +45,11 @@ unsafe extern "C" fn logger(
     log.lock().expect("one thread").push(line);
 }
 
-/// An instance and what it told its host.
-pub struct Host {
+/// An instance of a model and what it told its host.
+pub struct Host<M: Model = Nondimensional> {
     pub component: fmi2Component,
     pub log: Box<Log>,
+    model: PhantomData<M>,
 }
 
 impl Host {
@@ -58,12 +61,37 @@ impl Host {
         Host::made(name, fmi2Type_fmi2CoSimulation, guid, location)
     }
 
+    pub fn new() -> Host {
+        Host::of(fmi2Type_fmi2CoSimulation)
+    }
+
+    pub fn of(kind: fmi2Type) -> Host {
+        Host::of_model(kind)
+    }
+
+    pub fn set(&self, name: &str, value: f64) -> fmi2Status {
+        unsafe { fmi2SetReal(self.component, &reference(name), 1, &value) }
+    }
+
+    pub fn get(&self, name: &str) -> f64 {
+        let mut value = f64::NAN;
+        let status = unsafe { fmi2GetReal(self.component, &reference(name), 1, &mut value) };
+        assert_eq!(status, OK, "{:?}", self.last_line());
+        value
+    }
+
+    pub fn step(&self, time: f64, step: f64) -> fmi2Status {
+        unsafe { fmi2DoStep(self.component, time, step, 1) }
+    }
+}
+
+impl<M: Model> Host<M> {
     pub fn made(
         name: *const c_char,
         kind: fmi2Type,
         guid: *const c_char,
         location: *const c_char,
-    ) -> Host {
+    ) -> Host<M> {
         let log = Box::new(Log::default());
         let named = logger
             as unsafe extern "C" fn(
@@ -83,34 +111,52 @@ impl Host {
             stepFinished: None,
             componentEnvironment: (&raw const *log).cast_mut().cast(),
         };
-        let component = unsafe { fmi2Instantiate(name, kind, guid, location, &callbacks, 0, 1) };
-        Host { component, log }
+        let component =
+            unsafe { fmi2::fmi2Instantiate::<M>(name, kind, guid, location, &callbacks, 0, 1) };
+        Host {
+            component,
+            log,
+            model: PhantomData,
+        }
     }
 
-    pub fn new() -> Host {
-        Host::of(fmi2Type_fmi2CoSimulation)
-    }
-
-    pub fn of(kind: fmi2Type) -> Host {
-        let guid = CString::new(Nondimensional::GUID).expect("no NUL");
-        let host = Host::with(c"actuator".as_ptr(), kind, guid.as_ptr());
+    /// An instance of this kind of FMU.
+    pub fn of_model(kind: fmi2Type) -> Host<M> {
+        let guid = CString::new(M::GUID).expect("no NUL");
+        let host = Host::made(c"actuator".as_ptr(), kind, guid.as_ptr(), null());
         assert!(!host.component.is_null());
         host
     }
 
-    pub fn set(&self, name: &str, value: f64) -> fmi2Status {
-        unsafe { fmi2SetReal(self.component, &reference(name), 1, &value) }
+    pub fn serialized(&self) -> Vec<u8> {
+        unsafe {
+            let mut state = null_mut();
+            assert_eq!(fmi2::fmi2GetFMUstate::<M>(self.component, &mut state), OK);
+            let bytes = bytes_of::<M>(self.component, state);
+            assert_eq!(fmi2::fmi2FreeFMUstate::<M>(self.component, &mut state), OK);
+            assert!(state.is_null());
+            bytes
+        }
     }
 
-    pub fn get(&self, name: &str) -> f64 {
-        let mut value = f64::NAN;
-        let status = unsafe { fmi2GetReal(self.component, &reference(name), 1, &mut value) };
-        assert_eq!(status, OK, "{:?}", self.last_line());
-        value
+    /// The status of going on from these bytes.
+    pub fn restored(&self, bytes: &[u8]) -> fmi2Status {
+        unsafe {
+            let (mut state, data) = (null_mut(), bytes.as_ptr().cast());
+            let read =
+                fmi2::fmi2DeSerializeFMUstate::<M>(self.component, data, bytes.len(), &mut state);
+            let status = read.max(fmi2::fmi2SetFMUstate::<M>(self.component, state));
+            fmi2::fmi2FreeFMUstate::<M>(self.component, &mut state);
+            status
+        }
     }
 
-    pub fn step(&self, time: f64, step: f64) -> fmi2Status {
-        unsafe { fmi2DoStep(self.component, time, step, 1) }
+    /// The communication point that was reached; 0 before there is one.
+    pub fn time(&self) -> f64 {
+        let mut time = 0.0;
+        let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
+        unsafe { fmi2::fmi2GetRealStatus::<M>(self.component, kind, &mut time) };
+        time
     }
 
     pub fn last_line(&self) -> String {
@@ -123,8 +169,21 @@ impl Host {
     }
 }
 
-impl Drop for Host {
+impl<M: Model> Drop for Host<M> {
     fn drop(&mut self) {
-        unsafe { fmi2FreeInstance(self.component) };
+        unsafe { fmi2::fmi2FreeInstance::<M>(self.component) };
+    }
+}
+
+/// A state as bytes; none for no state.
+pub fn bytes_of<M: Model>(c: fmi2Component, state: fmi2FMUstate) -> Vec<u8> {
+    let mut size = 0;
+    unsafe {
+        if fmi2::fmi2SerializedFMUstateSize::<M>(c, state, &mut size) != OK {
+            return Vec::new();
+        }
+        let mut bytes = vec![0u8; size];
+        fmi2::fmi2SerializeFMUstate::<M>(c, state, bytes.as_mut_ptr().cast(), size);
+        bytes
     }
 }

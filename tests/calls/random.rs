@@ -9,11 +9,15 @@ use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{TestCaseError, TestRunner};
 
-use super::script::{Act, Script, play};
+use super::script::{Act, Script, play, time_unit};
 use super::*;
+use dielectric_elastomer_actuator::model::variables::Kind;
+use dielectric_elastomer_actuator::si::Si;
 
-/// Set in the process that plays: the name of the test below that does it.
+/// The test below that plays in another process.
 const PLAYER: &str = "random::plays_for_the_tests";
+
+/// Set in that process: the identifier of the model.
 const ROLE: &str = "DEA_TEST_ROLE";
 
 /// Seconds after which a script hangs.
@@ -33,8 +37,19 @@ fn whole() -> impl Strategy<Value = i32> {
     prop_oneof![4 => -1..4, 1 => any::<i32>()]
 }
 
-fn reference() -> impl Strategy<Value = u32> {
-    prop_oneof![12 => 0..VARIABLES.len() as u32, 1 => any::<u32>()]
+fn reference<M: Model>() -> impl Strategy<Value = u32> {
+    prop_oneof![12 => 0..M::VARIABLES.len() as u32, 1 => any::<u32>()]
+}
+
+/// A number for a variable of its typical size.
+fn setting<M: Model>() -> impl Strategy<Value = (u32, f64)> {
+    (reference::<M>(), number()).prop_map(|(reference, number)| {
+        let row = M::VARIABLES.get(reference as usize);
+        match row.map(|row| row.kind) {
+            Some(Kind::Real { nominal, .. }) => (reference, number * nominal),
+            _ => (reference, number),
+        }
+    })
 }
 
 fn some<T: std::fmt::Debug>(item: impl Strategy<Value = T>) -> impl Strategy<Value = Vec<T>> {
@@ -42,8 +57,9 @@ fn some<T: std::fmt::Debug>(item: impl Strategy<Value = T>) -> impl Strategy<Val
 }
 
 /// The calls that lead on in the standard's order, more often than chance would.
-fn leading_on() -> impl Strategy<Value = Act> {
-    let step = prop_oneof![6 => 0.001..3.0_f64, 1 => number()];
+fn leading_on<M: Model>() -> impl Strategy<Value = Act> {
+    let unit = time_unit::<M>();
+    let step = prop_oneof![6 => (0.001..3.0_f64).prop_map(move |step| step * unit), 1 => number()];
     let at = prop_oneof![9 => Just(None), 1 => number().prop_map(Some)];
     prop_oneof![
         2 => Just(Act::EnterInitialization),
@@ -53,21 +69,21 @@ fn leading_on() -> impl Strategy<Value = Act> {
         1 => Just(Act::NewDiscreteStates),
         6 => (at, step, any::<bool>()).prop_map(|(at, step, back)| Act::Step(at, step, back)),
         3 => number().prop_map(Act::SetTime),
-        3 => prop::collection::vec(number(), 2).prop_map(Act::SetStates),
+        3 => prop::collection::vec(number(), M::STATES.len()).prop_map(Act::SetStates),
     ]
 }
 
-fn values() -> impl Strategy<Value = Act> {
+fn values<M: Model>() -> impl Strategy<Value = Act> {
     let orders = || prop_oneof![6 => 1..5, 1 => any::<i32>()];
     prop_oneof![
-        4 => some(reference()).prop_map(Act::GetReal),
-        6 => some((reference(), number())).prop_map(Act::SetReal),
-        1 => (any::<bool>(), some(reference())).prop_map(|(b, r)| Act::GetWhole(b, r)),
-        2 => (any::<bool>(), some((reference(), whole()))).prop_map(|(b, v)| Act::SetWhole(b, v)),
-        1 => some(reference()).prop_map(Act::Strings),
+        4 => some(reference::<M>()).prop_map(Act::GetReal),
+        6 => some(setting::<M>()).prop_map(Act::SetReal),
+        1 => (any::<bool>(), some(reference::<M>())).prop_map(|(b, r)| Act::GetWhole(b, r)),
+        2 => (any::<bool>(), some((reference::<M>(), whole()))).prop_map(|(b, v)| Act::SetWhole(b, v)),
+        1 => some(reference::<M>()).prop_map(Act::Strings),
         3 => some((0..3_u32, orders(), number())).prop_map(Act::SetInputDerivatives),
-        2 => some((reference(), orders())).prop_map(Act::GetOutputDerivatives),
-        2 => (some(reference()), some((reference(), number())))
+        2 => some((reference::<M>(), orders())).prop_map(Act::GetOutputDerivatives),
+        2 => (some(reference::<M>()), some((reference::<M>(), number())))
             .prop_map(|(unknown, known)| Act::GetDirectional(unknown, known)),
     ]
 }
@@ -87,9 +103,10 @@ fn states() -> impl Strategy<Value = Act> {
     ]
 }
 
-fn others() -> impl Strategy<Value = Act> {
+fn others<M: Model>() -> impl Strategy<Value = Act> {
     let option = || prop::option::of(number());
-    let count = || prop_oneof![4 => Just(2_u8), 1 => 0..5_u8];
+    let right = [M::STATES.len() as u8, M::INDICATOR_COUNT as u8];
+    let count = move || prop_oneof![4 => select(right.to_vec()), 1 => 0..8_u8];
     prop_oneof![
         Just(Act::Renew),
         (any::<bool>(), some(0..5_u8)).prop_map(|(on, names)| Act::SetLogging(on, names)),
@@ -108,28 +125,38 @@ fn others() -> impl Strategy<Value = Act> {
     ]
 }
 
-fn scripts() -> impl Strategy<Value = Script> {
-    let act = prop_oneof![4 => leading_on(), 4 => values(), 2 => states(), 2 => others()];
+fn scripts<M: Model>() -> impl Strategy<Value = Script> {
+    let act =
+        prop_oneof![4 => leading_on::<M>(), 4 => values::<M>(), 2 => states(), 2 => others::<M>()];
     prop::collection::vec((prop::bool::weighted(0.3), act), 1..60)
 }
 
-/// Another process that plays scripts.
+/// Another process that plays scripts of a model.
 struct Player {
+    model: &'static str,
     process: Child,
     answers: BufReader<ChildStdout>,
 }
 
 impl Player {
-    fn new() -> Player {
+    fn of<M: Model>() -> Player {
+        Player::named(M::IDENTIFIER)
+    }
+
+    fn named(model: &'static str) -> Player {
         let mut process = Command::new(std::env::current_exe().expect("a running test"))
             .args([PLAYER, "--exact", "--nocapture", "--test-threads=1"])
-            .env(ROLE, PLAYER)
+            .env(ROLE, model)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
             .expect("the test starts again");
         let answers = BufReader::new(process.stdout.take().expect("piped"));
-        Player { process, answers }
+        Player {
+            model,
+            process,
+            answers,
+        }
     }
 
     /// Has a script played.
@@ -156,7 +183,7 @@ impl Player {
             line.clear();
         }
         let end = self.process.wait().expect("a process of ours");
-        *self = Player::new();
+        *self = Player::named(self.model);
         Err(format!("the process ended: {end}"))
     }
 }
@@ -172,9 +199,14 @@ impl Drop for Player {
 /// The other process; by itself no test, so that it passes where it has no role.
 #[test]
 fn plays_for_the_tests() {
-    if std::env::var(ROLE).is_err() {
+    let Ok(model) = std::env::var(ROLE) else {
         return;
-    }
+    };
+    let play = if model == Si::IDENTIFIER {
+        play::<Si>
+    } else {
+        play::<Nondimensional>
+    };
     let (mut input, mut length) = (stdin().lock(), [0; 4]);
     while input.read_exact(&mut length).is_ok() {
         let mut bytes = vec![0; u32::from_le_bytes(length) as usize];
@@ -189,27 +221,37 @@ fn plays_for_the_tests() {
 
 /// Whatever is called, the answer is as it has to be (see `Act` and `play`).
 /// `SOAK=long` plays fifty times as many scripts.
-#[test]
-fn random_calls_are_answered() {
+fn random_calls_are_answered<M: Model>() {
     let long = std::env::var("SOAK").is_ok_and(|form| form == "long");
     let config = ProptestConfig {
         cases: if long { 50_000 } else { 1_000 },
         failure_persistence: None,
         ..ProptestConfig::default()
     };
-    let (player, calls) = (RefCell::new(Player::new()), RefCell::new(0));
-    let outcome = TestRunner::new(config).run(&scripts(), |script| {
+    let (player, calls) = (RefCell::new(Player::of::<M>()), RefCell::new(0));
+    let outcome = TestRunner::new(config).run(&scripts::<M>(), |script| {
         *calls.borrow_mut() += script.len();
         let played = player.borrow_mut().play(&script);
         played.map_err(|fault| {
             // For the fuzzer's corpus.
-            let file = concat!(env!("CARGO_TARGET_TMPDIR"), "/failing-script");
-            std::fs::write(file, fuzzed(&script)).ok();
+            let folder = env!("CARGO_TARGET_TMPDIR");
+            let file = format!("{folder}/failing-script-{}", M::IDENTIFIER);
+            std::fs::write(&file, fuzzed(&script)).ok();
             TestCaseError::fail(format!("{fault} (script in {file})"))
         })
     });
     println!("{} calls", calls.borrow());
     outcome.unwrap_or_else(|fault| panic!("{fault}"));
+}
+
+#[test]
+fn random_calls_of_the_papers_model_are_answered() {
+    random_calls_are_answered::<Nondimensional>();
+}
+
+#[test]
+fn random_calls_of_the_real_actuator_are_answered() {
+    random_calls_are_answered::<Si>();
 }
 
 /// A script as the fuzzer's target takes it: acts one after the other.
@@ -222,7 +264,7 @@ fn fuzzed(script: &Script) -> Vec<u8> {
 
 #[test]
 fn the_end_of_the_process_is_noticed() {
-    let mut player = Player::new();
+    let mut player = Player::of::<Nondimensional>();
     assert_eq!(player.play(&vec![(false, Act::Reset)]), Ok(()));
     player.process.kill().expect("a process of ours");
     let fault = player
@@ -236,7 +278,7 @@ fn the_end_of_the_process_is_noticed() {
 #[test]
 fn the_corpus_of_the_fuzzer_is_answered() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/fuzz/corpus/calls");
-    let mut player = Player::new();
+    let mut player = Player::of::<Nondimensional>();
     let mut count = 0;
     for file in std::fs::read_dir(folder).expect("a folder") {
         let file = file.expect("a file").path();

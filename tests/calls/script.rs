@@ -4,14 +4,13 @@
 
 use std::ptr::{null, null_mut};
 
-use DielectricElastomerActuator::*;
+use dielectric_elastomer_actuator::fmi2::*;
 use dielectric_elastomer_actuator::model::Model;
-use dielectric_elastomer_actuator::model::variables::{Access, Kind};
-use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES, value_reference};
+use dielectric_elastomer_actuator::model::variables::{Access, Kind, value_reference};
 use fmi::fmi2::binding::*;
 use serde::{Deserialize, Serialize};
 
-use super::host::{ERROR, Host, OK};
+use super::host::{ERROR, Host, OK, bytes_of};
 
 /// Where the saved instance begins in a serialized state: after "DEA state",
 /// layout, GUID, length and checksum.
@@ -72,13 +71,18 @@ pub type Script = Vec<(bool, Act)>;
 ///
 /// # Errors
 /// The first answer that is not as it has to be.
-pub fn play(script: &[(bool, Act)]) -> Result<(), String> {
-    let mut stage = Stage::new();
+pub fn play<M: Model>(script: &[(bool, Act)]) -> Result<(), String> {
+    let mut stage = Stage::<M>::new();
     for (number, (exchange, act)) in script.iter().enumerate() {
         let played = stage.play(usize::from(*exchange), act);
         played.map_err(|fault| format!("call {number}, {act:?}: {fault}"))?;
     }
     Ok(())
+}
+
+/// The time in which the motion turns some times: the steps of scripts are some of it.
+pub fn time_unit<M: Model>() -> f64 {
+    10.0 * M::EXPERIMENT.step_size
 }
 
 /// The script of which these bytes are the acts, one after the other, as far as
@@ -103,23 +107,23 @@ pub fn seal(bytes: &mut [u8]) {
 }
 
 /// An instance, an instance for model exchange, and states, which both may be given.
-struct Stage {
-    hosts: [Host; 2],
+struct Stage<M: Model> {
+    hosts: [Host<M>; 2],
     states: [fmi2FMUstate; SLOTS as usize],
     /// Whether the log was left as it was at first.
     logging: [bool; 2],
 }
 
-impl Drop for Stage {
+impl<M: Model> Drop for Stage<M> {
     fn drop(&mut self) {
         for state in &mut self.states {
-            unsafe { fmi2FreeFMUstate(self.hosts[0].component, state) };
+            unsafe { fmi2FreeFMUstate::<M>(self.hosts[0].component, state) };
         }
     }
 }
 
-impl Stage {
-    fn new() -> Stage {
+impl<M: Model> Stage<M> {
+    fn new() -> Stage<M> {
         Stage {
             hosts: [0, 1].map(new),
             states: [null_mut(); SLOTS as usize],
@@ -174,20 +178,20 @@ impl Stage {
                     })
                     .collect();
                 self.logging[who] = false;
-                unsafe { fmi2SetDebugLogging(c, i32::from(*on), names.len(), names.as_ptr()) }
+                unsafe { fmi2SetDebugLogging::<M>(c, i32::from(*on), names.len(), names.as_ptr()) }
             }
             Act::SetupExperiment(tolerance, start, stop) => unsafe {
                 let (defined, tolerance) = (tolerance.is_some(), tolerance.unwrap_or(f64::NAN));
                 let (ends, stop) = (stop.is_some(), stop.unwrap_or(f64::NEG_INFINITY));
-                fmi2SetupExperiment(c, defined.into(), tolerance, *start, ends.into(), stop)
+                fmi2SetupExperiment::<M>(c, defined.into(), tolerance, *start, ends.into(), stop)
             },
-            Act::EnterInitialization => unsafe { fmi2EnterInitializationMode(c) },
-            Act::ExitInitialization => unsafe { fmi2ExitInitializationMode(c) },
-            Act::Terminate => unsafe { fmi2Terminate(c) },
-            Act::Reset => unsafe { fmi2Reset(c) },
+            Act::EnterInitialization => unsafe { fmi2EnterInitializationMode::<M>(c) },
+            Act::ExitInitialization => unsafe { fmi2ExitInitializationMode::<M>(c) },
+            Act::Terminate => unsafe { fmi2Terminate::<M>(c) },
+            Act::Reset => unsafe { fmi2Reset::<M>(c) },
             Act::GetReal(references) => {
                 let numbers = filled(references.len(), |to| unsafe {
-                    fmi2GetReal(c, references.as_ptr(), references.len(), to)
+                    fmi2GetReal::<M>(c, references.as_ptr(), references.len(), to)
                 })?;
                 let number = numbers.0 != OK || numbers.1.iter().all(|value| !value.is_nan());
                 demand(number, "a value is no number")?;
@@ -196,9 +200,9 @@ impl Stage {
             Act::SetReal(values) => self.set_real(who, values)?,
             Act::GetWhole(boolean, references) => {
                 let get = if *boolean {
-                    fmi2GetBoolean
+                    fmi2GetBoolean::<M>
                 } else {
-                    fmi2GetInteger
+                    fmi2GetInteger::<M>
                 };
                 let mut values = vec![7; references.len()];
                 let (from, to) = (references.as_ptr(), values.as_mut_ptr());
@@ -209,9 +213,9 @@ impl Stage {
             }
             Act::SetWhole(boolean, values) => unsafe {
                 let set = if *boolean {
-                    fmi2SetBoolean
+                    fmi2SetBoolean::<M>
                 } else {
-                    fmi2SetInteger
+                    fmi2SetInteger::<M>
                 };
                 let (references, values): (Vec<u32>, Vec<i32>) = values.iter().copied().unzip();
                 set(c, references.as_ptr(), references.len(), values.as_ptr())
@@ -219,22 +223,22 @@ impl Stage {
             Act::Strings(references) => unsafe {
                 let (from, count) = (references.as_ptr(), references.len());
                 let mut texts = vec![null(); count];
-                let got = fmi2GetString(c, from, count, texts.as_mut_ptr());
+                let got = fmi2GetString::<M>(c, from, count, texts.as_mut_ptr());
                 let texts = vec![c"text".as_ptr(); count];
-                got.max(fmi2SetString(c, from, count, texts.as_ptr()))
+                got.max(fmi2SetString::<M>(c, from, count, texts.as_ptr()))
             },
             Act::SetInputDerivatives(values) => unsafe {
                 let references: Vec<u32> = values.iter().map(|value| value.0).collect();
                 let orders: Vec<i32> = values.iter().map(|value| value.1).collect();
                 let values: Vec<f64> = values.iter().map(|value| value.2).collect();
                 let (from, count) = (references.as_ptr(), references.len());
-                fmi2SetRealInputDerivatives(c, from, count, orders.as_ptr(), values.as_ptr())
+                fmi2SetRealInputDerivatives::<M>(c, from, count, orders.as_ptr(), values.as_ptr())
             },
             Act::GetOutputDerivatives(wanted) => {
                 let (references, orders): (Vec<u32>, Vec<i32>) = wanted.iter().copied().unzip();
                 let (from, count) = (references.as_ptr(), references.len());
                 filled(count, |to| unsafe {
-                    fmi2GetRealOutputDerivatives(c, from, count, orders.as_ptr(), to)
+                    fmi2GetRealOutputDerivatives::<M>(c, from, count, orders.as_ptr(), to)
                 })?
                 .0
             }
@@ -243,35 +247,36 @@ impl Stage {
                 let (from, count) = (unknowns.as_ptr(), unknowns.len());
                 let (by, changes) = (known.as_ptr(), change.as_ptr());
                 filled(count, |to| unsafe {
-                    fmi2GetDirectionalDerivative(c, from, count, by, known.len(), changes, to)
+                    fmi2GetDirectionalDerivative::<M>(c, from, count, by, known.len(), changes, to)
                 })?
                 .0
             }
             Act::Step(at, step, may_go_back) => {
                 let at = at.unwrap_or_else(|| self.hosts[who].time());
                 // A long step of a fast drive is work, not a fault.
+                let unit = time_unit::<M>();
                 let step = if step.is_finite() {
-                    step.clamp(-1.0, 10.0)
+                    step.clamp(-unit, 10.0 * unit)
                 } else {
                     *step
                 };
-                unsafe { fmi2DoStep(c, at, step, i32::from(!may_go_back)) }
+                unsafe { fmi2DoStep::<M>(c, at, step, i32::from(!may_go_back)) }
             }
-            Act::Cancel => unsafe { fmi2CancelStep(c) },
+            Act::Cancel => unsafe { fmi2CancelStep::<M>(c) },
             Act::GetStatus(function, kind) => unsafe {
                 match function % FUNCTIONS_OF_STATUS {
-                    0 => fmi2GetStatus(c, *kind as u32, &mut 0),
-                    1 => fmi2GetRealStatus(c, *kind as u32, &mut 0.0),
-                    2 => fmi2GetIntegerStatus(c, *kind as u32, &mut 0),
-                    3 => fmi2GetBooleanStatus(c, *kind as u32, &mut 0),
-                    _ => fmi2GetStringStatus(c, *kind as u32, &mut null()),
+                    0 => fmi2GetStatus::<M>(c, *kind as u32, &mut 0),
+                    1 => fmi2GetRealStatus::<M>(c, *kind as u32, &mut 0.0),
+                    2 => fmi2GetIntegerStatus::<M>(c, *kind as u32, &mut 0),
+                    3 => fmi2GetBooleanStatus::<M>(c, *kind as u32, &mut 0),
+                    _ => fmi2GetStringStatus::<M>(c, *kind as u32, &mut null()),
                 }
             },
-            Act::Save(place) => unsafe { fmi2GetFMUstate(c, &mut self.states[slot(*place)]) },
-            Act::Restore(place) => unsafe { fmi2SetFMUstate(c, self.states[slot(*place)]) },
-            Act::Free(place) => unsafe { fmi2FreeFMUstate(c, &mut self.states[slot(*place)]) },
+            Act::Save(place) => unsafe { fmi2GetFMUstate::<M>(c, &mut self.states[slot(*place)]) },
+            Act::Restore(place) => unsafe { fmi2SetFMUstate::<M>(c, self.states[slot(*place)]) },
+            Act::Free(place) => unsafe { fmi2FreeFMUstate::<M>(c, &mut self.states[slot(*place)]) },
             Act::Damage(from, to, changes, length, sealed) => {
-                let mut bytes = bytes_of(c, self.states[slot(*from)]);
+                let mut bytes = bytes_of::<M>(c, self.states[slot(*from)]);
                 for &(place, byte) in changes {
                     if !bytes.is_empty() {
                         let place = usize::from(place) % bytes.len();
@@ -283,47 +288,51 @@ impl Stage {
                     seal(&mut bytes);
                 }
                 let (data, state) = (bytes.as_ptr().cast(), &mut self.states[slot(*to)]);
-                unsafe { fmi2DeSerializeFMUstate(c, data, bytes.len(), state) }
+                unsafe { fmi2DeSerializeFMUstate::<M>(c, data, bytes.len(), state) }
             }
-            Act::EnterEvent => unsafe { fmi2EnterEventMode(c) },
+            Act::EnterEvent => unsafe { fmi2EnterEventMode::<M>(c) },
             Act::NewDiscreteStates => unsafe {
                 let mut info: fmi2EventInfo = std::mem::zeroed();
-                fmi2NewDiscreteStates(c, &mut info)
+                fmi2NewDiscreteStates::<M>(c, &mut info)
             },
-            Act::EnterContinuous => unsafe { fmi2EnterContinuousTimeMode(c) },
+            Act::EnterContinuous => unsafe { fmi2EnterContinuousTimeMode::<M>(c) },
             Act::CompletedStep(last) => unsafe {
-                fmi2CompletedIntegratorStep(c, i32::from(*last), &mut 0, &mut 0)
+                fmi2CompletedIntegratorStep::<M>(c, i32::from(*last), &mut 0, &mut 0)
             },
-            Act::SetTime(time) => unsafe { fmi2SetTime(c, *time) },
+            Act::SetTime(time) => unsafe { fmi2SetTime::<M>(c, *time) },
             Act::SetStates(states) => unsafe {
-                fmi2SetContinuousStates(c, states.as_ptr(), states.len())
+                fmi2SetContinuousStates::<M>(c, states.as_ptr(), states.len())
             },
-            Act::GetDerivatives(count) => fill(c, *count, fmi2GetDerivatives)?,
-            Act::GetIndicators(count) => fill(c, *count, fmi2GetEventIndicators)?,
-            Act::GetStates(count) => fill(c, *count, fmi2GetContinuousStates)?,
-            Act::GetNominals(count) => fill(c, *count, fmi2GetNominalsOfContinuousStates)?,
-            Act::Null(which) => nothing(c, *which, self.states[0])?,
+            Act::GetDerivatives(count) => fill(c, *count, fmi2GetDerivatives::<M>)?,
+            Act::GetIndicators(count) => fill(c, *count, fmi2GetEventIndicators::<M>)?,
+            Act::GetStates(count) => fill(c, *count, fmi2GetContinuousStates::<M>)?,
+            Act::GetNominals(count) => fill(c, *count, fmi2GetNominalsOfContinuousStates::<M>)?,
+            Act::Null(which) => nothing::<M>(c, *which, self.states[0])?,
+        })
+    }
+
+    /// Whether the actuator for model exchange has come to a limit: it may then be held.
+    fn held(&self) -> bool {
+        let c = self.hosts[1].component;
+        ["collapsed", "breakdown"].into_iter().any(|name| {
+            let mut value = 0.0;
+            if let Some(reference) = value_reference::<M>(name) {
+                unsafe { fmi2GetReal::<M>(c, &reference, 1, &mut value) };
+            }
+            value == 1.0
         })
     }
 
     /// Sets all or none, and only what may be set.
-    /// Whether the actuator for model exchange has collapsed: it may then be held.
-    fn held(&self) -> bool {
-        let (host, collapsed) = (&self.hosts[1], value_reference("collapsed"));
-        let (reference, mut value) = (collapsed.expect("an output"), 0.0);
-        unsafe { fmi2GetReal(host.component, &reference, 1, &mut value) };
-        value == 1.0
-    }
-
     fn set_real(&self, who: usize, values: &[(u32, f64)]) -> Result<fmi2Status, String> {
         let host = &self.hosts[who];
         let (references, numbers): (Vec<u32>, Vec<f64>) = values.iter().copied().unzip();
         let (from, count) = (references.as_ptr(), references.len());
-        let status = unsafe { fmi2SetReal(host.component, from, count, numbers.as_ptr()) };
+        let status = unsafe { fmi2SetReal::<M>(host.component, from, count, numbers.as_ptr()) };
         if status == OK {
             for (place, &(reference, number)) in values.iter().enumerate() {
-                let state = who == 1 && Nondimensional::STATES.contains(&reference);
-                let row = VARIABLES.get(reference as usize);
+                let state = who == 1 && M::STATES.contains(&reference);
+                let row = M::VARIABLES.get(reference as usize);
                 let may_be_set = state && number.is_finite()
                     || row.is_some_and(|row| {
                         matches!(row.kind, Kind::Real { .. })
@@ -333,7 +342,7 @@ impl Stage {
                 demand(may_be_set, "a value was set that may not be")?;
                 let again = references[place + 1..].contains(&reference) || state && self.held();
                 let mut now = number;
-                unsafe { fmi2GetReal(host.component, &reference, 1, &mut now) };
+                unsafe { fmi2GetReal::<M>(host.component, &reference, 1, &mut now) };
                 demand(again || now == number, "a value was not set")?;
             }
         }
@@ -341,8 +350,8 @@ impl Stage {
     }
 }
 
-fn new(who: usize) -> Host {
-    Host::of([fmi2Type_fmi2CoSimulation, fmi2Type_fmi2ModelExchange][who])
+fn new<M: Model>(who: usize) -> Host<M> {
+    Host::of_model([fmi2Type_fmi2CoSimulation, fmi2Type_fmi2ModelExchange][who])
 }
 
 fn demand(holds: bool, fault: &str) -> Result<(), String> {
@@ -371,79 +380,38 @@ fn fill(
     Ok(filled(count, |to| unsafe { function(c, to, count) })?.0)
 }
 
-/// A state as bytes; none for no state.
-fn bytes_of(c: fmi2Component, state: fmi2FMUstate) -> Vec<u8> {
-    let mut size = 0;
-    unsafe {
-        if fmi2SerializedFMUstateSize(c, state, &mut size) != OK {
-            return Vec::new();
-        }
-        let mut bytes = vec![0u8; size];
-        fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr().cast(), size);
-        bytes
-    }
-}
-
 /// Null where there must be something; any answer but an error is a fault.
-fn nothing(c: fmi2Component, which: u8, state: fmi2FMUstate) -> Result<fmi2Status, String> {
+fn nothing<M: Model>(
+    c: fmi2Component,
+    which: u8,
+    state: fmi2FMUstate,
+) -> Result<fmi2Status, String> {
     let one = &0;
     let status = unsafe {
         match which % 20 {
-            0 => fmi2GetReal(c, null(), 1, &mut 0.0),
-            1 => fmi2GetReal(c, one, 1, null_mut()),
-            2 => fmi2SetReal(c, one, 1, null()),
-            3 => fmi2SetReal(c, null(), 2, [0.0; 2].as_ptr()),
-            4 => fmi2GetInteger(c, null(), 1, &mut 0),
-            5 => fmi2SetBoolean(c, one, 1, null()),
-            6 => fmi2GetString(c, null(), 1, null_mut()),
-            7 => fmi2SetDebugLogging(c, 1, 1, null()),
-            8 => fmi2GetDirectionalDerivative(c, one, 1, one, 1, null(), &mut 0.0),
-            9 => fmi2GetDirectionalDerivative(c, one, 1, null(), 1, &1.0, null_mut()),
-            10 => fmi2SetRealInputDerivatives(c, one, 1, null(), &0.0),
-            11 => fmi2GetRealOutputDerivatives(c, one, 1, &1, null_mut()),
-            12 => fmi2GetFMUstate(c, null_mut()),
-            13 => fmi2SetFMUstate(c, null_mut()),
-            14 => fmi2SerializedFMUstateSize(c, state, null_mut()),
-            15 => fmi2SerializeFMUstate(c, state, null_mut(), 9),
-            16 => fmi2DeSerializeFMUstate(c, null(), 9, &mut null_mut()),
-            17 => fmi2NewDiscreteStates(c, null_mut()),
-            18 => fmi2CompletedIntegratorStep(c, 1, null_mut(), null_mut()),
-            _ => fmi2GetDerivatives(c, null_mut(), 2),
+            0 => fmi2GetReal::<M>(c, null(), 1, &mut 0.0),
+            1 => fmi2GetReal::<M>(c, one, 1, null_mut()),
+            2 => fmi2SetReal::<M>(c, one, 1, null()),
+            3 => fmi2SetReal::<M>(c, null(), 2, [0.0; 2].as_ptr()),
+            4 => fmi2GetInteger::<M>(c, null(), 1, &mut 0),
+            5 => fmi2SetBoolean::<M>(c, one, 1, null()),
+            6 => fmi2GetString::<M>(c, null(), 1, null_mut()),
+            7 => fmi2SetDebugLogging::<M>(c, 1, 1, null()),
+            8 => fmi2GetDirectionalDerivative::<M>(c, one, 1, one, 1, null(), &mut 0.0),
+            9 => fmi2GetDirectionalDerivative::<M>(c, one, 1, null(), 1, &1.0, null_mut()),
+            10 => fmi2SetRealInputDerivatives::<M>(c, one, 1, null(), &0.0),
+            11 => fmi2GetRealOutputDerivatives::<M>(c, one, 1, &1, null_mut()),
+            12 => fmi2GetFMUstate::<M>(c, null_mut()),
+            13 => fmi2SetFMUstate::<M>(c, null_mut()),
+            14 => fmi2SerializedFMUstateSize::<M>(c, state, null_mut()),
+            15 => fmi2SerializeFMUstate::<M>(c, state, null_mut(), 9),
+            16 => fmi2DeSerializeFMUstate::<M>(c, null(), 9, &mut null_mut()),
+            17 => fmi2NewDiscreteStates::<M>(c, null_mut()),
+            18 => fmi2CompletedIntegratorStep::<M>(c, 1, null_mut(), null_mut()),
+            _ => fmi2GetDerivatives::<M>(c, null_mut(), 2),
         }
     };
-    let nobody = unsafe { fmi2DoStep(null_mut(), 0.0, 0.1, 1) };
+    let nobody = unsafe { fmi2DoStep::<M>(null_mut(), 0.0, 0.1, 1) };
     demand((status, nobody) == (ERROR, ERROR), "null was taken")?;
     Ok(status)
-}
-
-impl Host {
-    pub fn serialized(&self) -> Vec<u8> {
-        unsafe {
-            let mut state = null_mut();
-            assert_eq!(fmi2GetFMUstate(self.component, &mut state), OK);
-            let bytes = bytes_of(self.component, state);
-            assert_eq!(fmi2FreeFMUstate(self.component, &mut state), OK);
-            assert!(state.is_null());
-            bytes
-        }
-    }
-
-    /// The status of going on from these bytes.
-    pub fn restored(&self, bytes: &[u8]) -> fmi2Status {
-        unsafe {
-            let (mut state, data) = (null_mut(), bytes.as_ptr().cast());
-            let read = fmi2DeSerializeFMUstate(self.component, data, bytes.len(), &mut state);
-            let status = read.max(fmi2SetFMUstate(self.component, state));
-            fmi2FreeFMUstate(self.component, &mut state);
-            status
-        }
-    }
-
-    /// The communication point that was reached; 0 before there is one.
-    pub fn time(&self) -> f64 {
-        let mut time = 0.0;
-        let kind = fmi2StatusKind_fmi2LastSuccessfulTime;
-        unsafe { fmi2GetRealStatus(self.component, kind, &mut time) };
-        time
-    }
 }
