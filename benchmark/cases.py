@@ -6,6 +6,7 @@ import math
 import random
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -48,7 +49,7 @@ class Case:
         return 1 + 2 * gamma - 2 * tau + elasticity, 4 * tau - 4 * elasticity, 3 * elasticity
 
 
-_REFERENCE_SET = {"gamma_s": "0.05", "tau_s": "0.05", "E_s": "0.2"}
+_REFERENCE_SET: dict[str, Any] = {"gamma_s": "0.05", "tau_s": "0.05", "E_s": "0.2"}
 _SHARED = ROOT / "tests" / "reference"
 _OWN = HERE / "references"
 
@@ -58,11 +59,19 @@ CASES = (
     Case("c", "DC near pull-in", _OWN / "case_c.csv", phi="0.646", spacing="25"),
     Case(
         *("d", "AC near resonance", _SHARED / "case_d.csv"),
-        **dict(gamma_s="0.1", tau_s="0.05", E_s="0.2", phi_ac="0.3", omega_ac="0.1471", stepped=True),
+        gamma_s="0.1",
+        tau_s="0.05",
+        E_s="0.2",
+        phi_ac="0.3",
+        omega_ac="0.1471",
+        stepped=True,
     ),
     Case(
         *("e", "AC, superharmonic", _OWN / "case_e.csv"),
-        **dict(phi_ac="0.3", omega_ac="0.2764", spacing="100", **_REFERENCE_SET),
+        phi_ac="0.3",
+        omega_ac="0.2764",
+        spacing="100",
+        **_REFERENCE_SET,
     ),
 )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 from cases import CASES, ROOT
 from ratios import FLOOR
@@ -13,8 +14,8 @@ import matplotlib.pyplot as plt
 
 import figure_style as style
 
-OURS = {"color": style.COLOURS[1], "linewidth": 2.4, "zorder": 4}
-LOOKS = {
+OURS: dict[str, Any] = {"color": style.COLOURS[1], "linewidth": 2.4, "zorder": 4}
+LOOKS: dict[str, dict[str, Any]] = {
     "ours, packed FMU": {**OURS, "marker": "o"},
     "ours without orbit reuse": {**OURS, "marker": "o", "markerfacecolor": "white", "linestyle": (0, (4, 1.5))},
     "ours baseline SIMD without orbit reuse": {**OURS, "marker": ".", "linewidth": 1.2, "linestyle": ":"},
@@ -27,7 +28,7 @@ LOOKS = {
     "SciPy RK45": {"color": style.GREY, "marker": "v", "linestyle": (0, (5, 1.6))},
     "SciPy LSODA": {"color": style.GREY, "marker": "x", "linestyle": (0, (1.2, 1.2))},
 }
-STEP_LOOKS = {
+STEP_LOOKS: dict[tuple[str, str], tuple[str, dict[str, Any]]] = {
     ("ours", "unchanged"): ("ours, inputs unchanged", {**OURS, "marker": "o"}),
     ("ours", "held"): ("ours, voltage set at each call", {**OURS, "marker": "v", "linestyle": (0, (4, 1.5))}),
     ("ours", "linear"): ("… and its 1st derivative", {**OURS, "marker": ".", "linewidth": 1.2, "linestyle": "--"}),
@@ -45,10 +46,6 @@ STEP_LOOKS = {
 }
 
 
-def _number(text) -> float | None:
-    return None if text in ("", None) else float(text)
-
-
 def work_precision(rows: list[dict], path: Path) -> Path:
     """One panel a case: nanoseconds for each unit of time against the largest error."""
     style.apply()
@@ -57,7 +54,7 @@ def work_precision(rows: list[dict], path: Path) -> Path:
     for case, axes in zip(CASES, panels):
         for method, look in LOOKS.items():
             points = [
-                (max(_number(row["error"]), FLOOR), _number(row["nanoseconds"]))
+                (max(float(row["error"]), FLOOR), float(row["nanoseconds"]))
                 for row in rows
                 if row["case"] == case.name and row["method"] == method and row["nanoseconds"] not in ("", None)
             ]
@@ -88,7 +85,7 @@ def co_simulation(rows: list[dict], path: Path) -> Path:
     for case, axes in zip(cases, panels):
         for (method, inputs), (label, look) in STEP_LOOKS.items():
             points = [
-                (float(row["step"]), _number(row["nanoseconds"]))
+                (float(row["step"]), float(row["nanoseconds"]))
                 for row in rows
                 if (row["case"], row["method"], row["inputs"]) == (case.name, method, inputs)
                 and row["nanoseconds"] not in ("", None)

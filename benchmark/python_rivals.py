@@ -12,6 +12,7 @@ import math
 import statistics
 import time
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import numpy as np
 
@@ -149,7 +150,7 @@ class Heyoka:
         for tolerance in (1e-6, 1e-9, 1e-12):
             integrator = compiled(tolerance)
             error = float(np.abs(follow(integrator) - exact).max())
-            seconds = _seconds(least, lambda integrator=integrator: follow(integrator))
+            seconds = _seconds(least, partial(follow, integrator))
             nanoseconds = 1e9 * seconds / ENSEMBLE_SCENES
             about = {"inputs": "extremes not looked for", "nanoseconds": nanoseconds, "error": error}
             yield row(f"heyoka batch of {lanes}", tolerance, **about)

@@ -18,7 +18,7 @@ KEYS = ("case", "method", "tolerance", "step", "inputs")
 
 
 def _processor() -> dict[str, str]:
-    fields = {}
+    fields: dict[str, str] = {}
     cpuinfo = Path("/proc/cpuinfo")
     if cpuinfo.is_file():
         for line in cpuinfo.read_text().splitlines():

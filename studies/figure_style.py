@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 
@@ -90,7 +91,7 @@ NAMES = {
 BLACK = "#000000"
 GREY = "#8c8c8c"
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
-EXACT = {"color": BLACK, "marker": "o", "markersize": 4, "linestyle": "", "zorder": 5}
+EXACT: dict[str, Any] = {"color": BLACK, "marker": "o", "markersize": 4, "linestyle": "", "zorder": 5}
 """Look of exact values beside computed ones."""
 BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5)}
 """Where a legend goes that must cover no curve."""

@@ -64,7 +64,8 @@ def dc_responses(families: dict[str, list[Oscillation]], *, title: str) -> Figur
     return figure
 
 
-BELOW, ABOVE = "-", (0, (3, 1.5))
+BELOW = (0.0, ())
+ABOVE = (0.0, (3, 1.5))
 """Line styles of the two sides of a pull-in voltage."""
 
 

@@ -128,7 +128,7 @@ def _case(row: dict) -> SurfaceEffects:
 
 
 def _pull_in(phi: str | None, lambda3: str | None) -> PullIn:
-    return PullIn(math.inf, 0.0) if phi is None else PullIn(float(phi), float(lambda3))
+    return PullIn(math.inf, 0.0) if phi is None or lambda3 is None else PullIn(float(phi), float(lambda3))
 
 
 def _thresholds(block: str) -> list[Threshold]:

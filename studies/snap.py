@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -88,7 +89,7 @@ def draw_membrane(axes: Axes, height: float, stretch: float, colour: str, text: 
     axes.add_patch(Rectangle((-stretch / 2, height - thin / 2), stretch, thin, color=MEMBRANE, linewidth=0))
     for edge in (height - thin / 2 - electrode, height + thin / 2):
         axes.add_patch(Rectangle((-stretch / 2, edge), stretch, electrode, color=colour, linewidth=0))
-    outline = {"fill": False, "linestyle": (0, (4, 3)), "edgecolor": "#555555", "linewidth": 0.9}
+    outline: dict[str, Any] = {"fill": False, "linestyle": (0, (4, 3)), "edgecolor": "#555555", "linewidth": 0.9}
     rest = (-0.5, height - thick / 2 - electrode)
     axes.add_patch(Rectangle(rest, 1.0, thick + 2 * electrode, **outline))
     for place in (np.arange(charges) + 0.5) / max(charges, 1) - 0.5:

@@ -78,7 +78,9 @@ def record(time: np.ndarray, voltage: np.ndarray, path: Path, seed: int) -> Path
 def identify(path: Path, free: list[str], **known: float) -> Fit:
     """Fit the free parameters to a record; the others are known."""
     data = measured.read(path, ["time", "voltage", "stretch"])
-    return fit(**data, free=free, start={**GUESS, **known}, interpolation="hold")
+    return fit(
+        data["time"], data["voltage"], data["stretch"], free=free, start={**GUESS, **known}, interpolation="hold"
+    )
 
 
 def compare(found: Fit) -> None:

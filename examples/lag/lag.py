@@ -12,6 +12,7 @@ import argparse
 import math
 import sys
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -112,7 +113,7 @@ def draw_inputs(actuator: Actuator, fmu: Path, found: dict[str, list[float]]) ->
         points, [voltage(t) for t in points], where="post", color=style.COLOURS[1], label="held: half a step late"
     )
     panels["response"].plot(smooth, fine, color=style.BLACK, label="exact")
-    look = {"linestyle": "", "markersize": 4}
+    look: dict[str, Any] = {"linestyle": "", "markersize": 4}
     panels["response"].plot(points, held(fmu, step), "o", color=style.COLOURS[1], label="held", **look)
     panels["response"].plot(
         points, with_derivatives(actuator, step, 1), "s", color=style.COLOURS[0], label="first derivative", **look

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +17,8 @@ import figure_style as style
 from dielectric_actuator import grid, packed_fmu
 from dielectric_actuator.measures import Measure
 from dielectric_actuator.sweep import PATIENCE, AnotherSweep, Unfinished, sweep
+
+Axis = Sequence[float] | np.ndarray
 
 DEFAULT_OUTPUT = Path(__file__).resolve().parents[2] / "target" / "examples" / "sweep"
 
@@ -37,7 +39,7 @@ def parse(description: str, **counts: int) -> argparse.Namespace:
     return parser.parse_args()
 
 
-def run(arguments: argparse.Namespace, measure: Measure, axes: dict[str, Sequence[float]], name: str) -> pa.Table:
+def run(arguments: argparse.Namespace, measure: Measure, axes: Mapping[str, Axis], name: str) -> pa.Table:
     """Run the sweep of the grid over `axes` into the Parquet file `name` of the output folder."""
     try:
         return sweep(

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
-from command import column, parse, run
+from command import Axis, column, parse, run
 from dielectric_actuator.measures import frequency_response
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
@@ -32,7 +32,7 @@ CURVES = (0.4, 0.3, 0.2, 0.1)
 def main() -> None:
     """Run the sweep, then draw it."""
     arguments = parse(__doc__, amplitudes=39, frequencies=900)
-    axes = {
+    axes: dict[str, Axis] = {
         "phi_ac": np.linspace(0.02, 0.4, arguments.amplitudes),
         "omega_ac": np.linspace(0.03, 0.33, arguments.frequencies),
         **{name: [value] for name, value in SURFACE_EFFECTS.items()},

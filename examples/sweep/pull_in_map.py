@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -19,7 +20,7 @@ from matplotlib.figure import Figure
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
-from command import column, parse, run
+from command import Axis, column, parse, run
 from dielectric_actuator.measures import pull_in
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.0}
@@ -29,7 +30,7 @@ STOP_TIME = 500.0
 def main() -> None:
     """Run the sweep, then draw it."""
     arguments = parse(__doc__, voltages=240, prestresses=160)
-    axes = {
+    axes: dict[str, Axis] = {
         "phi": np.linspace(0.3, 0.9, arguments.voltages),
         "S": np.linspace(0.0, 0.5, arguments.prestresses),
         **{name: [value] for name, value in SURFACE_EFFECTS.items()},
@@ -58,7 +59,7 @@ def draw(table: pa.Table) -> Figure:
     figure, axes = plt.subplots(figsize=(9.5, 5.2))
     extent = (phi.min(), phi.max(), prestress.min(), prestress.max())
     pulled_in = on_grid("pulled_in").astype(bool)
-    look = {"origin": "lower", "extent": extent, "aspect": "auto", "interpolation": "nearest"}
+    look: dict[str, Any] = {"origin": "lower", "extent": extent, "aspect": "auto", "interpolation": "nearest"}
     times = np.ma.masked_where(~pulled_in, on_grid("pull_in_time"))
     safe = np.ma.masked_where(pulled_in, on_grid("lambda3_lowest"))
     time_image = axes.imshow(times, cmap="viridis", norm="log", **look)

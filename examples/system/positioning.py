@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -84,9 +86,9 @@ def by_derivatives(coupling: Coupling, stop_time: float, step: float, order: int
 def errors(ssp: Path, coupling: Coupling, exact: np.ndarray) -> dict[str, dict[float, float]]:
     """Largest error of the leader's λ at the communication points, by way and step."""
     stop_time = FINE_STEP * (len(exact) - 1)
-    ways = {FMPY: lambda step: by_fmpy(ssp, stop_time, step)}
+    ways: dict[str, Callable[[float], np.ndarray]] = {FMPY: partial(by_fmpy, ssp, stop_time)}
     for name, order in ORDERS.items():
-        ways[name] = lambda step, order=order: by_derivatives(coupling, stop_time, step, order)
+        ways[name] = partial(by_derivatives, coupling, stop_time, order=order)
     found: dict[str, dict[float, float]] = {}
     for name, way in ways.items():
         held = name == FMPY or ORDERS[name] == 0

@@ -14,8 +14,10 @@ import platform
 import resource
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -96,7 +98,10 @@ def independent(workers: Workers, responses: resonance_entries.Responses, size: 
     places = [(case, responses[case].peaks[branch, window].omega) for case, branch in keys]
     third = len(places) // 3
     loose = [(run, rtol, size.window) for run, rtol in chaos.loose_runs()]
-    jobs = [(chaos.of_the_paper, size.window), (chaos.of_the_chaotic, size.chaotic_window)]
+    jobs: list[tuple[Callable[[Actuator, Any], Any], object]] = [
+        (chaos.of_the_paper, size.window),
+        (chaos.of_the_chaotic, size.chaotic_window),
+    ]
     jobs += [(resonance_entries.check_peaks, (places[k : k + third], window)) for k in range(0, len(places), third)]
     jobs += [(chaos.follow_loosely, item) for item in loose]
     found = workers.map(_apply, jobs)

@@ -46,13 +46,13 @@ def of_the_paper(_actuator: Actuator, window: float) -> Indicators:
 
 def of_the_chaotic(_actuator: Actuator, window: float) -> Indicators:
     """Indicators of `CHAOTIC`."""
-    cases, omega, phi_ac = zip(*CHAOTIC)
-    return DrivenRuns(list(cases), np.array(omega), np.array(phi_ac)).indicators(indicator_times(window))
+    omega, phi_ac = (np.array([run[k] for run in CHAOTIC]) for k in (1, 2))
+    return DrivenRuns([run[0] for run in CHAOTIC], omega, phi_ac).indicators(indicator_times(window))
 
 
 def checks(actuator: Actuator, indicators: Indicators) -> dict[DrivenRun, list[Row]]:
     """λ of each run at `CHECKED_AT`: the independent integrator (as exact) beside the FMU."""
-    found = {}
+    found: dict[DrivenRun, list[Row]] = {}
     for index, run in enumerate(driven_runs()):
         actuator.start(run.scene(), tolerance=TOLERANCE)
         found[run] = []
@@ -172,9 +172,10 @@ def follow_loosely(_actuator: Actuator, item: tuple[DrivenRun, float, float]) ->
     samples = np.linspace(0, window, round(window / 0.25) + 1)
     times = np.union1d(sections, samples)
     stretch, rate = embedded_pair(run.case, PHI_AC, run.omega, times, rtol, atol)
-    response = np.empty(len(times), dtype=[(name, float) for name in ("time", *turning_points.OUTPUTS)])
+    names = ("time", *turning_points.OUTPUTS)
+    response = np.empty(len(times), dtype=[(name, float) for name in names])
     bend = Cases.of([run.case]).acceleration(stretch, rate, (PHI_AC * np.sin(run.omega * times)) ** 2)
-    for name, values in zip(response.dtype.names, (times, stretch, rate, bend)):
+    for name, values in zip(names, (times, stretch, rate, bend)):
         response[name] = values
     at = np.searchsorted(times, sections)
     section = np.column_stack([stretch[at] ** -2, -2 * rate[at] * stretch[at] ** -3])

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.transforms import Bbox
 
 import figure_style as style
 from comparison import Row
+
+Columns = Mapping[str, Sequence[Any] | np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -46,7 +50,7 @@ class Entry:
     key: str
     title: str
     figure: Figure
-    columns: dict[str, Sequence]
+    columns: Columns
     rows: list[Row] = field(default_factory=list)
     grids: list[Grid] = field(default_factory=list)
     claims: list[Claim] = field(default_factory=list)
@@ -66,7 +70,7 @@ def _exactly(value) -> str:
     return repr(float(value)) if isinstance(value, float | np.floating) else str(value)
 
 
-def long_format(pieces: Iterable[tuple[dict[str, object], np.ndarray]], names: Sequence[str]) -> dict[str, list]:
+def long_format(pieces: Iterable[tuple[Mapping[str, object], np.ndarray]], names: Sequence[str]) -> dict[str, list]:
     """Responses of several runs as one set of columns: what tells the runs apart, then the fields `names`."""
     columns: dict[str, list] = {}
     for labels, response in pieces:
@@ -77,13 +81,22 @@ def long_format(pieces: Iterable[tuple[dict[str, object], np.ndarray]], names: S
     return columns
 
 
-def stack(columns: dict[str, Sequence], further: dict[str, Sequence]) -> dict[str, list]:
+def stack(columns: Columns, further: Columns) -> dict[str, list]:
     """The rows of `further` under those of `columns`, which has the same names."""
-    return {name: [*columns[name], *further[name]] for name in columns} if columns else dict(further)
+    return (
+        {name: [*columns[name], *further[name]] for name in columns}
+        if columns
+        else {name: list(column) for name, column in further.items()}
+    )
 
 
 def draw_table(
-    header: Sequence[str], rows: Sequence[Sequence[str]], *, title: str, marked: set = frozenset(), meaning: str
+    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    title: str,
+    marked: Collection[tuple[int, int]] = (),
+    meaning: str,
 ) -> Figure:
     """A table as a figure. `marked` cells, (row, column) counted from 0, are drawn in bold on a tint; `meaning`
     says below the table what that is."""
@@ -96,7 +109,7 @@ def draw_table(
         colLabels=header,
         colWidths=[width / sum(widths) for width in widths],
         cellLoc="right",
-        bbox=(0, 0, 1, 1),
+        bbox=Bbox.unit(),
     )
     table.auto_set_font_size(False)
     table.set_fontsize(10)

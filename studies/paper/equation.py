@@ -27,8 +27,10 @@ class Cases:
 
     @classmethod
     def of(cls, cases: list[SurfaceEffects], c: float = 100.0) -> Cases:
-        columns = [[getattr(case, name) for case in cases] for name in ("gamma_s", "tau_s", "E_s", "S")]
-        return cls(*map(np.array, columns), c)
+        gamma_s, tau_s, E_s, S = (
+            np.array([getattr(case, name) for case in cases]) for name in ("gamma_s", "tau_s", "E_s", "S")
+        )
+        return cls(gamma_s, tau_s, E_s, S, c)
 
     def inertia(self, stretch):
         """c + 2λ⁻⁶."""

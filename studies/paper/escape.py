@@ -8,7 +8,7 @@ from matplotlib.colors import LogNorm
 
 import figure_style as style
 from dielectric_actuator import Actuator
-from paper.entries import Claim, Entry, Grid, stack
+from paper.entries import Claim, Columns, Entry, Grid, stack
 from paper.equation import threshold
 from paper.maps import CMAP, IDEAL, NO_MAP, TOLERANCE
 from paper.workers import Workers
@@ -53,7 +53,8 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     meshes = [(np.linspace(*across, cells), np.linspace(*up, cells)) for across, up in WINDOWS]
     maps = [np.array(workers.map(escape_row, [(phi, omegas) for phi in voltages])) for omegas, voltages in meshes]
     instants = np.concatenate([found[np.isfinite(found)] for found in maps])
-    norm = LogNorm(instants.min(), instants.max())
+    first, last = instants.min(), instants.max()
+    norm = LogNorm(first, last)
     for letter, axes, (omegas, voltages), found in zip("abc", panels, meshes, maps):
         lowest = min(lowest, voltages[np.isfinite(found).any(axis=1)].min(initial=np.inf))
         shown = axes.pcolormesh(
@@ -72,13 +73,13 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
         )
         axes.locator_params(axis="x", nbins=5)
         mesh_phi, mesh_omega = np.meshgrid(voltages, omegas, indexing="ij")
-        further = {"window": [letter] * found.size, "omega": mesh_omega.ravel(), "phi_ac": mesh_phi.ravel()}
+        further: Columns = {"window": [letter] * found.size, "omega": mesh_omega.ravel(), "phi_ac": mesh_phi.ravel()}
         columns = stack(columns, {**further, "pull_in_time": found.ravel()})
     for axes, ((left, right), (bottom, top)) in zip(panels, WINDOWS[1:]):
         corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
         axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
     bar = figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
-    ticks = [instant for instant in (20, 50, 100, 200, 500) if norm.vmin <= instant <= norm.vmax]
+    ticks = [instant for instant in (20, 50, 100, 200, 500) if first <= instant <= last]
     bar.ax.yaxis.set_ticks(ticks, labels=[str(instant) for instant in ticks])
     bar.ax.yaxis.set_ticks((), minor=True)
 

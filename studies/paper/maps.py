@@ -60,7 +60,7 @@ def pull_in_map(workers: Workers, cells: int) -> Entry:
             rasterized=True,
         )
         axes.set_facecolor(NO_MAP)
-        curves = {name: [] for name in ("phi_pull_in", "phi_pull_in_static")}
+        curves: dict[str, list[float]] = {name: [] for name in ("phi_pull_in", "phi_pull_in_static")}
         for S in prestresses:
             workers.actuator.start({**case.scene(), "S": S})
             for name, value in zip(curves, workers.actuator.get(*curves)):
@@ -221,7 +221,8 @@ def period(actuator: Actuator, item: tuple[SurfaceEffects, float]) -> float:
 def period_curve(workers: Workers, points: int) -> Entry:
     """Period over voltage, and its growth like −ln|φᶜ − φ| at pull-in with the rate of the saddle."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(12.5, 4.8))
-    rows, columns = [], {name: [] for name in ("gamma_s", "tau_s", "E_s", "phi", "distance", "period")}
+    rows = []
+    columns: dict[str, list[float]] = {name: [] for name in ("gamma_s", "tau_s", "E_s", "phi", "distance", "period")}
     for index, case in enumerate(PERIOD_CASES):
         exact = equation.threshold(case)
         rest = (2 * (case.gamma_s + case.tau_s)) ** 0.5
@@ -243,18 +244,11 @@ def period_curve(workers: Workers, points: int) -> Entry:
         slope = np.polyfit(-np.log(distances[near]), periods[near], 1)[0]
         expected = 1 / equation.escape_rate(case, exact)
         rows.append(Row(f"dT/d(-ln(phi^C - phi)), {varied or 'ideal'}", None, expected, float(slope)))
-        for field, values in zip(
-            columns,
-            (
-                [case.gamma_s] * len(periods),
-                [case.tau_s] * len(periods),
-                [case.E_s] * len(periods),
-                voltages,
-                distances,
-                periods,
-            ),
-        ):
-            columns[field].extend(values)
+        for field in ("gamma_s", "tau_s", "E_s"):
+            columns[field] += [getattr(case, field)] * len(periods)
+        columns["phi"] += voltages.tolist()
+        columns["distance"] += distances.tolist()
+        columns["period"] += periods.tolist()
     left.set(xlabel=f"voltage  {style.SYMBOLS['phi']}", ylabel="period  $T$", ylim=(20, 160))
     right.set(xlabel=r"distance to pull-in  $\bar{\phi}^C - \bar{\phi}$", ylabel="period  $T$")
     right.invert_xaxis()

@@ -8,7 +8,7 @@ import numpy as np
 import figure_style as style
 from comparison import Row
 from dielectric_actuator import Actuator
-from paper.entries import Claim, Entry, Grid, draw_table, stack
+from paper.entries import Claim, Columns, Entry, Grid, draw_table, stack
 from paper.independent import DrivenRuns
 from paper.resonance import RESOLUTION, Response
 from paper.scenes import BRANCHES, PHI_AC, PRESTRESSES, TABLES, VALUES, printed_resonances, varied
@@ -45,7 +45,7 @@ def figure_8(actuator: Actuator, responses: Responses, growth: list[tuple[int, f
                     place = float(printed[response.case, branch])
                     axes.plot(place, 0.0075, "|", markersize=11, markeredgewidth=1.8, color=look["color"])
                 length = len(response.omega)
-                labels = {"varied": [parameter] * length, "value": [value] * length, "S": [prestress] * length}
+                labels: Columns = {"varied": [parameter] * length, "value": [value] * length, "S": [prestress] * length}
                 fields = {f"amplitude_T{w:g}": response.amplitude[:, k] for k, w in enumerate(windows)}
                 columns = stack(columns, {**labels, "omega": response.omega, **fields})
             axes.plot([], [], "o", color=style.GREY, markersize=4, label="peak")
@@ -165,7 +165,7 @@ def _strongest_shift(responses: Responses) -> Claim:
                         else responses[high].peaks[branch, responses[high].windows[-1]].omega
                         - responses[low].peaks[branch, responses[low].windows[-1]].omega
                     )
-                strongest.append(max(shift, key=shift.get))
+                strongest.append(max(shift, key=lambda name: shift[name]))
             holds += [name == "E_s" for name in strongest]
             listed = ", ".join(f"{style.TEXT_SYMBOLS[name]} ({branch})" for name, branch in zip(strongest, BRANCHES))
             whose = "the paper's numbers" if own else "the FMU's"
@@ -204,7 +204,9 @@ def tables(responses: Responses, checked: dict[tuple[SurfaceEffects, str], list[
     for parameter, number in TABLES.items():
         header = ["", "branch", style.SYMBOLS["S"], "paper", *(f"T = {w:g}" for w in windows), "paper $-$ nearest"]
         header += [r"$\lambda_3^a$ FMU", r"$\lambda_3^a$ exact"]
-        cells, rows, marked = [], [], set()
+        cells: list[list[str]] = []
+        rows: list[Row] = []
+        marked: set[tuple[int, int]] = set()
         columns: dict[str, list] = {}
         for value in VALUES[parameter]:
             for branch in BRANCHES:
@@ -268,9 +270,9 @@ def window_comparison(responses: Responses) -> Entry:
     columns: dict[str, list] = {"branch": [], "window": [], "rms": [], "worst": [], "to_four_digits": [], "entries": []}
     for index, branch in enumerate((*BRANCHES, "all")):
         for window in windows:
-            found = np.abs([d for (_, b), d in distances[window].items() if branch in (b, "all")])
-            hits = int((found <= LAST_DIGIT / 2).sum())
-            line = (branch, window, float(np.sqrt((found**2).mean())), float(found.max()), hits, len(found))
+            away = np.abs([d for (_, b), d in distances[window].items() if branch in (b, "all")])
+            hits = int((away <= LAST_DIGIT / 2).sum())
+            line = (branch, window, float(np.sqrt((away**2).mean())), float(away.max()), hits, len(away))
             for name, value in zip(columns, line):
                 columns[name].append(value)
         look = {"color": style.BLACK, "linestyle": "-"} if branch == "all" else style.curve(index)
@@ -283,8 +285,8 @@ def window_comparison(responses: Responses) -> Entry:
 
     lines = list(zip(*columns.values()))
     whole = lines[-len(windows) :]
-    _, best, rms, worst, _, entries = min(whole, key=lambda line: line[2])
-    hits = [line[4] for line in whole]
+    _, best, rms, worst, _, compared = min(whole, key=lambda line: line[2])
+    agreeing = [line[4] for line in whole]
     mean = np.mean([float(value) for value in printed.values()])
     settled = windows[min(1, len(windows) - 1)]
     moved = max(
@@ -301,8 +303,8 @@ def window_comparison(responses: Responses) -> Entry:
         grids=[Grid("Paper against the peaks of each window", ["branch", "T", "RMS", "worst", "to 4 digits"], cells)],
         remarks=[
             f"No one window gives the printed numbers. T = {best:g} is nearest: RMS {rms:.1e}, worst {worst:.1e}, "
-            f"that is {100 * rms / mean:.1f} % of the mean frequency; at most {max(hits)} of {entries} entries agree "
-            "to their four digits at once. The paper states no window, frequency step or tolerance, so that its "
+            f"that is {100 * rms / mean:.1f} % of the mean frequency; at most {max(agreeing)} of {compared} entries "
+            "agree to their four digits at once. The paper states no window, frequency step or tolerance, so that its "
             "numbers cannot be obtained again; they hold to about 1 %.",
             "The sub- and superharmonic peaks drift with T, since nothing is damped. The harmonic peak is a jump, "
             f"settled by T = {settled:g} (it moves by at most {moved:.0e} until T = {windows[-1]:g}), and its printed "

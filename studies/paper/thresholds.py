@@ -43,7 +43,9 @@ def table_1(actuator: Actuator) -> Entry:
     stretch, voltage = style.SYMBOLS["lambda3_pull_in"], style.SYMBOLS["phi_pull_in"]
     header = ["", f"{stretch} paper", "exact", "FMU", "paper $-$ exact", f"{voltage} paper", "exact", "FMU"]
     header.append("paper $-$ exact")
-    cells, rows, marked = [], [], set()
+    cells: list[list[str]] = []
+    rows: list[Row] = []
+    marked: set[tuple[int, int]] = set()
     columns: dict[str, list] = {name: [] for name in ("gamma_s", "tau_s", "E_s")}
     for threshold in references.table_1():
         exact, found = threshold.dynamic, own_threshold(actuator, threshold.case)
@@ -57,8 +59,9 @@ def table_1(actuator: Actuator) -> Entry:
         for row in pair:
             if row.misprinted:
                 marked.add((len(cells), len(line)))
-            line += [row.printed, f"{row.exact:.10f}", f"{row.measured:.10f}"]
-            line.append(f"{float(row.printed) - row.exact:+.1e}")
+            printed = row.printed or ""
+            line += [printed, f"{row.exact:.10f}", f"{row.measured:.10f}"]
+            line.append(f"{float(printed) - row.exact:+.1e}")
         cells.append(line)
         rows += pair
         for parameter in IDEAL:
@@ -107,7 +110,7 @@ def figure_4(actuator: Actuator) -> Entry:
     figure, panels = plt.subplots(1, 3, figsize=(14, 5), sharey=True)
     pieces, rows = [], []
     for letter, axes, (parameter, values) in zip("abc", panels, VALUES.items()):
-        worst: Row | None = None
+        overshoots: list[Row] = []
         for index, value in enumerate(values):
             case, look = alone(parameter, value), {"color": style.COLOURS[index]}
             curve = _branches(case)
@@ -121,8 +124,8 @@ def figure_4(actuator: Actuator) -> Entry:
                 axes.plot(fold.lambda3, fold.phi, "x", color=style.BLACK, markersize=8, zorder=5)
             for phi, row in _overshoots(actuator, case, fold, f"{parameter} = {value:g}"):
                 axes.plot(row.measured, phi, ".", markersize=6, **look)
-                worst = row if worst is None or abs(row.difference) > abs(worst.difference) else worst
-        rows.append(worst)
+                overshoots.append(row)
+        rows.append(max(overshoots, key=lambda row: abs(row.difference)))
         axes.set_title(f"({letter})  {style.NAMES[parameter]}", loc="left")
         axes.set_xlabel(r"thickness stretch at the overshoot  $\lambda_{3m}$")
         # without 0, which would stand against the 1 of the panel before

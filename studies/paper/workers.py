@@ -6,7 +6,7 @@ study of many scenes must not pay for again and again is the first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import util
 from pathlib import Path
@@ -50,13 +50,11 @@ class Workers:
 
     def map(self, task: Callable[[Actuator, Any], Any], items: Iterable) -> list:
         """`task` (a function of a module) for each item, in the order of the items; the stage shows how far it is."""
-        items: Sequence = list(items)
-        if self._pool is None:
-            results = (task(self.actuator, item) for item in items)
-        else:
-            results = self._pool.map(_call, [(task, item) for item in items])
+        count = len(jobs := [(task, item) for item in items])
+        here = (task(self.actuator, item) for _, item in jobs)
+        results: Iterator[Any] = here if self._pool is None else self._pool.map(_call, jobs)
         collected = []
         for result in results:
             collected.append(result)
-            self._progress.part(len(collected), len(items))
+            self._progress.part(len(collected), count)
         return collected

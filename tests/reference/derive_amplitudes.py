@@ -13,6 +13,7 @@ Needs mpmath, which the project itself does not. Takes a few minutes.
 import json
 import sys
 from functools import partial
+from typing import Any
 
 from mpmath import cos, findroot, inf, mp, mpf, nstr, pi, polyval, quad, sin, sqrt
 
@@ -95,8 +96,9 @@ def taylor(stretch, rate, time, c, a1, a3, a5, phi_a, omega, order, prestress=0,
         terms[0] += offset**2
         voltage = [one + other for one, other in zip(voltage, terms, strict=True)]
 
-    L, V, A = [stretch], [rate], []
-    V2, L2, L3, L5, U, U2, U3, U5, U6, U7, M = ([] for _ in range(11))
+    L, V = [stretch], [rate]
+    rows: list[list[Any]] = [[] for _ in range(12)]
+    A, V2, L2, L3, L5, U, U2, U3, U5, U6, U7, M = rows
     for k in range(order):
         U.append(1 / L[0] if k == 0 else -mp.fdot(L[1 : k + 1], U[k - 1 :: -1]) / L[0])
         for series, (p, q) in ((U2, (U, U)), (U3, (U, U2)), (U5, (U2, U3)), (U6, (U3, U3)), (U7, (U6, U))):

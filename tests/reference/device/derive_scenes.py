@@ -44,7 +44,7 @@ def radau(count):
         roots[-1] = 1
     before, _ = value(roots, count)
     weights = (1 + roots) / (count * before) ** 2
-    polynomials = [np.ones_like(roots), roots]
+    polynomials: list[np.ndarray] = [np.ones_like(roots), roots]
     for k in range(1, count):
         polynomials.append(((2 * k + 1) * roots * polynomials[k] - k * polynomials[k - 1]) / (k + 1))
     matrix = np.zeros((count, count), dtype=REAL)
