@@ -43,7 +43,7 @@ export RUSTUP_TOOLCHAIN := stable
 endif
 endif
 
-# What `make test` runs, each a target of its own. Reports are counted, and notes repeated, at its end.
+# What `make test` runs, each a target of its own, after it has packed what several of them need. Reports are counted, and notes repeated, at its end.
 CHECKS = format lint python-lint licences documentation \
 python-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
 REPORTS := target/reports
@@ -173,8 +173,10 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 
 test:
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS); failed=; \
+	$(MAKE) --no-print-directory fmu native || failed=packing; \
 	for check in $(CHECKS); do \
-	$(MAKE) --no-print-directory $$check || failed="$$failed $$check"; done; \
+	$(MAKE) --no-print-directory --assume-old=fmu --assume-old=native --assume-old=page $$check || \
+	failed="$$failed $$check"; done; \
 	$(PYTHON) tests/summary.py $(REPORTS) $$failed
 
 format: $(TESTS_INSTALLED)
@@ -219,7 +221,7 @@ rust-tests: $(TESTS_INSTALLED)
 	$(call heading,Rust tests)
 	@$(NEXTEST) run --workspace
 
-documentation-tests: $(TESTS_INSTALLED)
+documentation-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Rust tests in the documentation)
 	@$(PYTEST) tests/documentation $(JUNIT)
 
