@@ -1,4 +1,5 @@
 //! An FMU for co-simulation, as a host loads it.
+#![expect(unsafe_code, reason = "this module loads libraries")]
 
 use std::ffi::{CStr, c_char};
 use std::ptr::null;

@@ -1,4 +1,5 @@
 //! A host of the FMI functions: what a simulation tool does, without the tool.
+#![expect(unsafe_code, reason = "this module speaks C with FMUs")]
 
 use std::ffi::{CString, c_char, c_void};
 use std::ptr::{null, null_mut};

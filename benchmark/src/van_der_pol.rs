@@ -1,5 +1,6 @@
 //! The van der Pol oscillator of the Reference FMUs (Modelica Association), as a
 //! host loads it: forward Euler with an internal step of 0.01.
+#![expect(unsafe_code, reason = "this module speaks C with an FMU")]
 
 use fmi::fmi2::binding::{fmi2CallbackFunctions, fmi2Component, fmi2Status_fmi2OK};
 

@@ -2,6 +2,7 @@
 //! reader of the crate `fmi`, which knows nothing of it, reads back.
 #![no_main]
 #![allow(dead_code)]
+#![expect(unsafe_code, reason = "the texts of a table live for ever")]
 
 #[path = "../../src/description/schema.rs"]
 mod schema;
@@ -14,9 +15,10 @@ libfuzzer_sys::fuzz_target!(
     |input: (f64, f64, Option<u32>, Option<bool>, u32, &str, &str)| {
         let (start, min, derivative, reinit, value_reference, name, description) = input;
         let texts = [name, description].map(legal);
-        // The writer takes texts of the table only, which live for ever.
         let [name, description]: [&'static str; 2] = texts
             .each_ref()
+            // SAFETY: the writer takes texts of the table only, which live for ever; it has returned
+            // before these are dropped.
             .map(|text| unsafe { &*(text.as_str() as *const str) });
         let variable = ScalarVariable {
             name,

@@ -2,7 +2,7 @@
 //! length and checksum; an instance that takes them is saved as bytes that are taken in their
 //! turn, and goes on without harm.
 #![no_main]
-#![allow(dead_code)]
+#![allow(dead_code, unsafe_code, clippy::undocumented_unsafe_blocks)]
 
 #[path = "../../tests/calls/host.rs"]
 mod host;
