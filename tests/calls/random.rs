@@ -3,7 +3,10 @@
 
 use std::cell::RefCell;
 use std::io::{BufRead, BufReader, Read, Write, stdin, stdout};
-use std::process::{Child, ChildStdout, Command, Stdio};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
 
 use proptest::prelude::*;
 use proptest::sample::select;
@@ -20,8 +23,8 @@ const PLAYER: &str = "random::plays_for_the_tests";
 /// Set in that process: the identifier of the model.
 const ROLE: &str = "DEA_TEST_ROLE";
 
-/// Seconds after which a script hangs.
-const PATIENCE: u32 = 20;
+/// After which a script hangs. It takes milliseconds; the rest is for a busy machine.
+const PATIENCE: Duration = Duration::from_secs(300);
 const ANSWER: &str = "played: ";
 
 fn number() -> impl Strategy<Value = f64> {
@@ -135,7 +138,8 @@ fn scripts<M: Model>() -> impl Strategy<Value = Script> {
 struct Player {
     model: &'static str,
     process: Child,
-    answers: BufReader<ChildStdout>,
+    /// What it prints, line by line.
+    lines: Receiver<String>,
 }
 
 impl Player {
@@ -151,11 +155,18 @@ impl Player {
             .stdout(Stdio::piped())
             .spawn()
             .expect("the test starts again");
-        let answers = BufReader::new(process.stdout.take().expect("piped"));
+        let output = BufReader::new(process.stdout.take().expect("piped"));
+        let (send, lines) = channel();
+        thread::spawn(move || {
+            let whole = output.lines().map_while(Result::ok);
+            whole
+                .take_while(|line| send.send(line.clone()).is_ok())
+                .count()
+        });
         Player {
             model,
             process,
-            answers,
+            lines,
         }
     }
 
@@ -165,26 +176,30 @@ impl Player {
         let input = self.process.stdin.as_mut().expect("piped");
         let length = (bytes.len() as u32).to_le_bytes();
         let sent = input.write_all(&[&length, bytes.as_slice()].concat());
-        let mut line = String::new();
-        while sent.is_ok()
-            && self
-                .answers
-                .read_line(&mut line)
-                .is_ok_and(|count| count > 0)
-        {
-            if let Some((_, answer)) = line.split_once(ANSWER) {
-                let answer = answer.trim_end();
-                return if answer == "well" {
-                    Ok(())
-                } else {
-                    Err(answer.to_owned())
-                };
+        let mut hangs = false;
+        while sent.is_ok() {
+            match self.lines.recv_timeout(PATIENCE) {
+                Ok(line) => match line.split_once(ANSWER).map(|(_, answer)| answer.trim_end()) {
+                    Some("well") => return Ok(()),
+                    Some(fault) => return Err(fault.to_owned()),
+                    None => {}
+                },
+                Err(reason) => {
+                    hangs = reason == RecvTimeoutError::Timeout;
+                    break;
+                }
             }
-            line.clear();
+        }
+        if hangs {
+            self.process.kill().expect("a process of ours");
         }
         let end = self.process.wait().expect("a process of ours");
         *self = Player::named(self.model);
-        Err(format!("the process ended: {end}"))
+        Err(if hangs {
+            format!("it was not played within {PATIENCE:?}")
+        } else {
+            format!("the process ended: {end}")
+        })
     }
 }
 
@@ -212,8 +227,6 @@ fn plays_for_the_tests() {
         let mut bytes = vec![0; u32::from_le_bytes(length) as usize];
         input.read_exact(&mut bytes).expect("a whole script");
         let script: Script = postcard::from_bytes(&bytes).expect("a script");
-        // A script that hangs ends the process.
-        unsafe { libc::alarm(PATIENCE) };
         let answer = play(&script).err().unwrap_or_else(|| "well".into());
         writeln!(stdout(), "\n{ANSWER}{}", answer.replace('\n', " ")).expect("a listener");
     }

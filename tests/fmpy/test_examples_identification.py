@@ -17,7 +17,7 @@ def done(fmu_path, tmp_path_factory):
     """What the example prints, and the folder that it writes to."""
     folder = tmp_path_factory.mktemp("identification")
     words = [sys.executable, EXAMPLE / "identify.py", "--output", folder]
-    return subprocess.run(words, capture_output=True, text=True, check=True, timeout=300).stdout, folder
+    return subprocess.run(words, capture_output=True, text=True, check=True, timeout=600).stdout, folder
 
 
 def test_the_tables_of_the_page_are_those_that_are_printed(done):

@@ -16,7 +16,7 @@ def test_each_derivative_gains_an_order_and_the_collapse_is_located(fmu_path, tm
         [sys.executable, REPOSITORY / "examples" / "lag" / "lag.py", "--fmu", fmu_path, "--output", tmp_path],
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     rows = [line.split() for line in done.stdout.splitlines() if line[:1].isdigit()]

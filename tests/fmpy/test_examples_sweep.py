@@ -155,7 +155,7 @@ def test_the_sweep_of_the_page_runs(tmp_path):
         env={**os.environ, "PYTHONPATH": str(EXAMPLE)},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     table = parquet.read_table(tmp_path / "turning_stretch.parquet")
@@ -173,7 +173,7 @@ def run_script(name, fmu, output, *options) -> str:
         [sys.executable, EXAMPLE / name, "--fmu", fmu, "--output", output, *options],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     return done.stdout

@@ -76,7 +76,7 @@ def outcomes(fmu_path, si_path, tmp_path_factory):
         env={**os.environ, "TMPDIR": str(folder)},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     codes = [int(line.split()[1]) for line in done.stdout.splitlines()]

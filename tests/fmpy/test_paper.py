@@ -232,7 +232,7 @@ def test_the_small_version_from_end_to_end(fmu_path, tmp_path):
         cwd=REPOSITORY / "studies",
         capture_output=True,
         text=True,
-        timeout=400,
+        timeout=600,
     )
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     assert done.stderr == ""

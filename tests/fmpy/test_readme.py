@@ -42,7 +42,7 @@ def in_checkout(arguments: list, fmu_path: Path, folder: Path) -> subprocess.Com
         env={**os.environ, "MPLBACKEND": "Agg"},
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode == 0, f"{done.stdout}\n{done.stderr}"
     return done

@@ -186,7 +186,6 @@ def test_terminate_ends_the_run_at_the_collapse(fmu_path, instantiate, reference
         instance.doStep(ended, 1.0)
 
 
-@pytest.mark.timeout(120)
 def test_a_step_that_is_too_much_work_ends_the_run(fmu_path):
     """FMPy asks for a step that was discarded again, for ever if it is not told to end."""
     result = simulate_fmu(

@@ -88,7 +88,7 @@ def test_demonstration(fmu_path, tmp_path):
         [sys.executable, str(REPOSITORY / "studies" / "demonstration.py"), "--fmu", fmu_path, "--output", tmp_path],
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=600,
     )
     assert done.returncode == 0, done.stderr
     pictures = sorted(path.name for path in tmp_path.iterdir())

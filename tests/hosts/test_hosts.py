@@ -17,7 +17,7 @@ HERE = Path(__file__).parent
 def rows(host: str, fmu: Path) -> list[list[float]]:
     """λ and λ3 at each communication point as `host` gets them, in a process of its own."""
     command = [sys.executable, HERE / "run_in_host.py", host, fmu]
-    run = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    run = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
     assert run.returncode == 0, f"{host} ended with {run.returncode}:\n{run.stdout[-2000:]}\n{run.stderr[-2000:]}"
     lines = [line.split()[1:] for line in run.stdout.splitlines() if line.startswith("row")]
     return [[float(number) for number in line] for line in lines]

@@ -24,7 +24,7 @@ def run(host: str, fmu: Path) -> subprocess.CompletedProcess:
     if not run_in_host.is_there(host):
         pytest.skip(f"{host} is missing: it has no package for this platform (tests/hosts/requirements.txt)")
     command = [sys.executable, Path(run_in_host.__file__), host, fmu, "terminate"]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    return subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
 
 
 @pytest.mark.parametrize("host", ERRORS)

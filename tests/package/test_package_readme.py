@@ -21,7 +21,7 @@ def blocks(language: str) -> list[str]:
 @pytest.mark.parametrize("code", blocks("python"))
 def test_program_runs(code, tmp_path):
     words = [sys.executable, "-W", "error::DeprecationWarning", "-c", code]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=600)
     assert done.returncode == 0 and done.stdout, done.stderr
 
 
@@ -30,7 +30,7 @@ def test_commands_run(tmp_path):
     for line in commands.splitlines():
         name, *words = line.split()
         program = Path(sys.executable).parent / name
-        done = subprocess.run([program, *words], cwd=tmp_path, capture_output=True, text=True, timeout=300)
+        done = subprocess.run([program, *words], cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
     assert sorted(path.name for path in tmp_path.iterdir()) == ["map.csv", "pull_in.csv", "pull_in.png", "step.ssv"]
 

@@ -209,6 +209,6 @@ def test_the_page_stands_alone_and_is_put_together_the_same_again(tmp_path):
     again = tmp_path / "again.html"
     subprocess.run(
         [environment["NODE"], REPOSITORY / "page" / "build.mjs", core, PAGE.parent / "licences.txt", again],
-        check=True, timeout=60,
+        check=True, timeout=600,
     )  # fmt: skip
     assert again.read_bytes() == PAGE.read_bytes()

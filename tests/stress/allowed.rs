@@ -97,9 +97,9 @@ pub const ENERGY_ROUNDING: f64 = 1e-13;
 /// substep, that is, over some tolerances of 1e-12, which then grow.
 pub const LEVELS: f64 = 1e-10;
 
-/// No step may seem to hang; a busy machine is given time. Measured: 0.02 s for
+/// No step may seem to hang. Processor time; measured: 0.02 s for
 /// steps of up to 0.01, 1 s for those that are discarded.
-pub const SLOWEST_STEP: Duration = Duration::from_secs(30);
+pub const SLOWEST_STEP: Duration = Duration::from_secs(10);
 
 /// Tolerances, times the amplification by the exact motion between communication points:
 /// what is promised.

@@ -14,6 +14,8 @@ mod independent;
 mod inputs;
 mod instance;
 mod levels;
+#[path = "../processor_time/mod.rs"]
+mod processor_time;
 mod ranges;
 mod scenes;
 mod steps;
