@@ -65,7 +65,12 @@ fn an_independent_reader_finds_every_variable_in_si_units() {
         .iter()
         .map(|v| v.name.as_str())
         .collect();
-    let ours: Vec<&str> = Si::VARIABLES.iter().map(|v| v.name).collect();
+    let further = Si::ALIASES.iter().map(|alias| alias.name);
+    let ours: Vec<&str> = Si::VARIABLES
+        .iter()
+        .map(|v| v.name)
+        .chain(further)
+        .collect();
     assert_eq!(names, ours);
     for variable in Si::VARIABLES {
         let unit = format!("<Unit name=\"{}\">", variable.unit.name);
@@ -122,4 +127,36 @@ fn row<M: Model>(variable: &Variable<M>) -> String {
         start.unwrap_or_default(),
         variable.description.replace('*', "\\*")
     )
+}
+
+/// Each member is a variable of the description with a causality of a port, once; the units of force and
+/// motion are those of a work.
+#[test]
+fn terminals_name_variables_of_the_table() {
+    assert!(description::terminals::xml::<Nondimensional>().is_none());
+    let text = description::terminals::xml::<Si>().expect("terminals");
+    let attribute = |line: &str, name: &str| {
+        let (_, rest) = line.split_once(&format!(" {name}=\"")).expect(name);
+        rest.split_once('"').expect("an end").0.to_owned()
+    };
+    let mut names = Vec::new();
+    for line in text.lines() {
+        if line.trim_start().starts_with("<TerminalMemberVariable") {
+            let name = attribute(line, "variableName");
+            let row = Si::VARIABLES.iter().find(|row| row.name == name);
+            let row = row.unwrap_or_else(|| panic!("no variable {name}"));
+            assert!(matches!(
+                row.causality,
+                Causality::Input | Causality::Output
+            ));
+            let flows = attribute(line, "variableKind") == "inflow";
+            assert_eq!(flows, matches!(row.unit.name, "N" | "A"), "{name}");
+            assert!(!names.contains(&name), "{name}");
+            names.push(name);
+        }
+    }
+    for name in ["voltage", "supply_current", "force", "edge_velocity"] {
+        assert!(names.iter().any(|known| known == name), "{name}");
+    }
+    assert_eq!(text.matches("<Terminal ").count(), 3);
 }

@@ -11,6 +11,23 @@ const MEMBRANE: [u8; 3] = [230, 159, 0];
 const ELECTRODE: [u8; 3] = [0, 114, 178];
 const INK: [u8; 3] = [40, 40, 40];
 
+/// Width and height of the icon of a terminal.
+const TERMINAL_SIZE: u32 = 32;
+
+/// The icon of a terminal as a PNG file: a square of its colour.
+///
+/// # Errors
+/// If it cannot be drawn or encoded, which would be a mistake here.
+pub fn terminal(rgb: [u8; 3]) -> Result<Vec<u8>> {
+    let mut canvas =
+        Pixmap::new(TERMINAL_SIZE, TERMINAL_SIZE).context("an icon of a terminal has a size")?;
+    canvas.fill(colour(INK));
+    let inner = TERMINAL_SIZE as f32 - 4.0;
+    let square = PathBuilder::from_rect(rectangle(2.0, 2.0, inner, inner)?);
+    fill(&mut canvas, rgb, &square);
+    canvas.encode_png().context("cannot encode the icon")
+}
+
 /// The icon as a PNG file.
 ///
 /// # Errors

@@ -11,6 +11,8 @@ mod licences;
 mod page;
 mod panic_report;
 mod platform;
+mod presets;
+mod terminals;
 mod toolchain;
 mod zig;
 
@@ -43,6 +45,8 @@ struct Fmu {
     xml: fn() -> String,
     /// Writes the table of its variables for the guide.
     variables: fn() -> String,
+    /// Writes what describes its terminals, and their icons.
+    terminals: fn() -> Result<Entries>,
 }
 
 impl Fmu {
@@ -52,6 +56,7 @@ impl Fmu {
             about,
             xml: description::xml::<M>,
             variables: guide::variables::table::<M>,
+            terminals: terminals::entries::<M>,
         }
     }
 
@@ -171,6 +176,9 @@ fn pack_one(
 ) -> Result<()> {
     let folder = project.workspace_root.join("target/fmu");
     entries.insert("modelDescription.xml".into(), (fmu.xml)().into());
+    entries.extend((fmu.terminals)()?);
+    let presets = presets::read(project, fmu.identifier)?;
+    entries.extend(presets::inside(&presets));
     let library = Library {
         identifier: fmu.identifier,
         names: EXPORTED_NAMES,
@@ -186,6 +194,7 @@ fn pack_one(
     }
     let path = folder.join(format!("{}.fmu", fmu.identifier));
     archive::write(path.as_std_path(), &entries)?;
+    presets::write(&presets, folder.join("presets").as_std_path())?;
     let size = fs::metadata(&path).map_or(0, |metadata| metadata.len());
     println!("{path}: {}, {} files", kibibytes(size), entries.len());
     print!("{report}");

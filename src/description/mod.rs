@@ -2,6 +2,7 @@
 
 pub mod guid;
 mod schema;
+pub mod terminals;
 
 use schema::{
     BaseUnit, Boolean, Category, CoSimulation, DefaultExperiment, DisplayUnit, Enumeration,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::{Course, Event, Fault, Instance, check_time};
 use crate::model::variables::{Access, Kind};
-use crate::model::{AtLimit, Collapse, Model, Recording};
+use crate::model::{Account, AtLimit, Collapse, Model, Recording};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -25,6 +25,7 @@ pub struct Exchange<M: Model> {
     /// hosts read for the last time before they handle the event that tells them so.
     pub(super) arrival: Option<Collapse<M::Limit>>,
     pub(super) record: Recording,
+    pub(super) account: M::Account,
 }
 
 /// What an event has changed.
@@ -52,6 +53,7 @@ impl<M: Model> Exchange<M> {
             collapse: None,
             arrival: None,
             record: recording::<M>(scene, time, &state),
+            account: M::Account::begin(scene, time, &state),
         }
     }
 
@@ -67,6 +69,7 @@ impl<M: Model> Exchange<M> {
             && self.time.is_finite()
             && collapses.all(|collapse| collapse.time.is_finite())
             && self.record.is_valid(M::records_extremes(scene))
+            && self.account.is_valid()
     }
 }
 
@@ -90,9 +93,11 @@ impl<M: Model> Instance<M> {
             time,
             state,
             record,
+            account,
             ..
         }) = &mut self.course
         {
+            account.include(&self.scene, *time, state);
             record.include(M::limits(&self.scene), *time, M::second_order(state));
         }
     }
@@ -121,14 +126,15 @@ impl<M: Model> Instance<M> {
         let time = exchange.time;
         exchange.collapse = Some(Collapse { limit, time });
         let text = M::describe(&scene, limit, time.value());
+        let choice = M::choice(limit);
         let consequence = match M::at_limit(&scene, limit) {
             AtLimit::Hold => {
                 update.states_changed = true;
-                "it stays there (on_pull_in = hold)"
+                format!("it stays there ({choice} = hold)")
             }
             AtLimit::Terminate => {
                 update.terminate = true;
-                "the simulation should end here (on_pull_in = terminate)"
+                format!("the simulation should end here ({choice} = terminate)")
             }
         };
         if update.states_changed {
@@ -152,12 +158,14 @@ impl<M: Model> Instance<M> {
         let scene = self.scene.clone();
         let exchange = self.exchange()?;
         let (time, state) = (exchange.time, exchange.state);
-        exchange
-            .record
-            .include_step(M::limits(&scene), time, M::second_order(&state));
         if exchange.collapse.is_some() {
             return Ok(false);
         }
+        let motion = M::second_order(&state);
+        exchange
+            .record
+            .include_step(M::limits(&scene), time, motion);
+        exchange.account.include_step(&scene, time, &state);
         exchange.arrival = M::limit_reached(&scene, &time, &state, REACHED)
             .filter(|&limit| M::at_limit(&scene, limit) == AtLimit::Terminate)
             .map(|limit| Collapse { limit, time });

@@ -22,7 +22,7 @@ pub use values::Type;
 use serde::{Deserialize, Serialize};
 
 use crate::model::variables::Access;
-use crate::model::{AtLimit, Model, Motion, Place, View};
+use crate::model::{Account, AtLimit, Model, Motion, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -149,13 +149,22 @@ impl<M: Model> Instance<M> {
                 (Place::On(motion), motion.time(), run.collapse())
             }
             Course::Exchange(now) => {
-                let (state, record) = (now.state, now.record);
+                let Exchange {
+                    state,
+                    record,
+                    account,
+                    ..
+                } = *now;
                 let arrival = now
                     .arrival
                     .as_ref()
                     .filter(|at| M::at_limit(scene, at.limit) == AtLimit::Terminate);
                 (
-                    Place::At { state, record },
+                    Place::At {
+                        state,
+                        record,
+                        account,
+                    },
                     &now.time,
                     now.collapse.as_ref().or(arrival),
                 )
@@ -164,7 +173,16 @@ impl<M: Model> Instance<M> {
                 // The drive counts from the start time.
                 let (state, time) = (M::start(scene), M::inputs_since(scene));
                 let record = exchange::recording::<M>(scene, *time, &state);
-                (Place::At { state, record }, time, None)
+                let account = M::Account::begin(scene, *time, &state);
+                (
+                    Place::At {
+                        state,
+                        record,
+                        account,
+                    },
+                    time,
+                    None,
+                )
             }
         };
         View {

@@ -192,16 +192,17 @@ impl<M: Model> Run<M> {
                 let time = *self.motion.time();
                 self.collapse = Some(Collapse { limit, time });
                 let text = M::describe(scene, limit, time.value());
+                let choice = M::choice(limit);
                 match M::at_limit(scene, limit) {
                     AtLimit::Hold => {
                         self.motion.wait(Double::new(step).plus(-after));
                         Ok(Some(Event {
                             warning: false,
-                            text: format!("{text}; it stays there (on_pull_in = hold)"),
+                            text: format!("{text}; it stays there ({choice} = hold)"),
                         }))
                     }
                     AtLimit::Terminate => Err(Fault::discard(format!(
-                        "{text}; the simulation should end here (on_pull_in = terminate)"
+                        "{text}; the simulation should end here ({choice} = terminate)"
                     ))),
                 }
             }

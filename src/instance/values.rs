@@ -4,8 +4,8 @@ use super::derivatives::state_component;
 use super::phase::Phase;
 use super::{Course, Fault, Instance};
 use crate::actuator::drive::Polynomial;
-use crate::model::Model;
 use crate::model::variables::{Access, Kind, Variability, Variable};
+use crate::model::{Model, View};
 use crate::shortest::Shortest;
 
 /// The types of FMI under which a variable can be got and set.
@@ -193,6 +193,9 @@ impl<M: Model> Instance<M> {
         let window = M::window(&self.scene);
         let begun = self.phase.has_begun();
         self.bring_drive_up_to_date();
+        if begun {
+            self.check_tuned(references, &value)?;
+        }
         for (place, &reference) in references.iter().enumerate() {
             let value = value(place);
             let changed = match M::VARIABLES[reference as usize].access {
@@ -238,6 +241,36 @@ impl<M: Model> Instance<M> {
         }
         if M::window(&self.scene) != window {
             self.record_anew();
+        }
+        Ok(())
+    }
+
+    /// Refuses tunable parameters with which there is no motion from the present state.
+    fn check_tuned(&self, references: &[u32], value: &impl Fn(usize) -> f64) -> Result<(), Fault> {
+        let settings = references
+            .iter()
+            .enumerate()
+            .filter_map(|(place, &reference)| {
+                let variable = &M::VARIABLES[reference as usize];
+                match variable.access {
+                    Access::Setting { set, .. } => Some((variable.name, set, value(place))),
+                    _ => None,
+                }
+            });
+        let mut scene = None;
+        let mut last = None;
+        for (name, set, value) in settings {
+            set(scene.get_or_insert_with(|| self.scene.clone()), value);
+            last = Some((name, value));
+        }
+        if let (Some(scene), Some((name, value))) = (scene, last) {
+            let view = View {
+                scene: &scene,
+                ..self.view()
+            };
+            M::check_state(&view).map_err(|why| {
+                Fault::error(format!("{name} = {} cannot be set: {why}", Shortest(value)))
+            })?;
         }
         Ok(())
     }

@@ -59,6 +59,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// The motion, where the model integrates it itself.
     type Motion: Motion<Self>;
 
+    /// What is recorded beside the extremes of a motion that the host integrates.
+    type Account: Account<Self>;
+
     /// Where a motion ends.
     type Limit: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
 
@@ -100,6 +103,11 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// What happens at a limit.
     fn at_limit(scene: &Self::Scene, limit: Self::Limit) -> AtLimit;
+
+    /// The name of the variable that chooses what happens at a limit.
+    fn choice(_limit: Self::Limit) -> &'static str {
+        "on_pull_in"
+    }
 
     /// What has happened at a limit, in words, the time included.
     fn describe(scene: &Self::Scene, limit: Self::Limit, time: f64) -> String;
@@ -191,6 +199,36 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     fn whereabouts(&self) -> String;
 }
 
+/// What is recorded, beside the extremes, of a motion that the host integrates in steps of its own.
+pub trait Account<M: Model>:
+    Copy + Debug + Default + PartialEq + Serialize + DeserializeOwned
+{
+    /// Records from this state on.
+    fn begin(scene: &M::Scene, time: Double, state: &M::State) -> Self;
+
+    /// Records the host's step that has come to this state.
+    fn include_step(&mut self, scene: &M::Scene, time: Double, state: &M::State);
+
+    /// Records this state alone: it, or an input, may have jumped.
+    fn include(&mut self, scene: &M::Scene, time: Double, state: &M::State);
+
+    /// Whether the numbers can be those of an account.
+    fn is_valid(&self) -> bool;
+}
+
+/// Nothing is recorded.
+impl<M: Model> Account<M> for () {
+    fn begin(_scene: &M::Scene, _time: Double, _state: &M::State) {}
+
+    fn include_step(&mut self, _scene: &M::Scene, _time: Double, _state: &M::State) {}
+
+    fn include(&mut self, _scene: &M::Scene, _time: Double, _state: &M::State) {}
+
+    fn is_valid(&self) -> bool {
+        true
+    }
+}
+
 /// What a host does with a model at first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Experiment {
@@ -224,8 +262,10 @@ pub enum Place<'a, M: Model> {
     At {
         /// The state.
         state: M::State,
-        /// What is recorded of the motion to it.
+        /// What is recorded of the motion to it: the extremes,
         record: Recording,
+        /// and what else.
+        account: M::Account,
     },
     /// The present of this motion.
     On(&'a M::Motion),
@@ -242,6 +282,17 @@ pub struct View<'a, M: Model> {
     pub time: &'a Double,
     /// Whether and when the motion came to a limit.
     pub collapse: Option<&'a Collapse<M::Limit>>,
+}
+
+impl<M: Model> Place<'_, M> {
+    /// A state of which nothing else is known.
+    pub fn of_state(time: Double, state: M::State) -> Self {
+        Place::At {
+            state,
+            record: Recording::begin(false, time, M::second_order(&state)),
+            account: M::Account::default(),
+        }
+    }
 }
 
 // Derived, these would ask the motion to be copied too.

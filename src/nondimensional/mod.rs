@@ -47,6 +47,7 @@ impl Model for Nondimensional {
     type Scene = Scene;
     type State = State;
     type Motion = Trajectory;
+    type Account = ();
     type Limit = Limit;
     type Sample<N: Number> = Sample<N>;
 

@@ -30,7 +30,7 @@ use crate::solver::number::Number;
 mod losses;
 mod search;
 
-pub use losses::from_rest;
+pub use losses::{Search, from_rest};
 use search::bisect;
 
 /// The largest stretch looked at, where the material does not lock.

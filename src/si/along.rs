@@ -5,7 +5,7 @@ use super::sample::{Basis, Sample, own};
 use super::scene::{BRANCHES, SiScene, SiState, place};
 use crate::actuator::device::equation::Load;
 use crate::model::variables::{Access, Kind};
-use crate::model::{Direction, Model, Place, Recording, View};
+use crate::model::{Direction, Model, Place, View};
 use crate::solver::coupled::{MOST_STATES, Stage};
 use crate::solver::jet::Dual;
 
@@ -89,7 +89,6 @@ impl View<'_, Si> {
         }
         let step = 1e-3 / size;
         let state = self.state();
-        let record = Recording::begin(false, *self.time, state.motion);
         let at = |steps: f64| {
             let mut scene = self.scene.clone();
             for (get, set) in numbers() {
@@ -101,7 +100,7 @@ impl View<'_, Si> {
             }
             View::<Si> {
                 scene: &scene,
-                place: Place::At { state, record },
+                place: Place::of_state(*self.time, state),
                 ..*self
             }
             .sample()

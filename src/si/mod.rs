@@ -1,23 +1,27 @@
 //! The real actuator in SI units as a [`Model`]: its table of variables and the physics behind
 //! it. The nondimensional core is the one model; `actuator::scales` is the only place with units.
 
+mod account;
 mod along;
+mod course;
 mod motion;
 mod sample;
 mod scene;
 mod table;
+mod thresholds;
 mod view;
 
+pub use account::SiAccount;
 pub use motion::SiMotion;
 pub use sample::Sample;
 pub use scene::{OnBreakdown, SiScene, SiState};
-pub use table::VARIABLES;
+pub use table::{ALIASES, VARIABLES};
 
 use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
-use crate::model::variables::{self, Variable};
-use crate::model::{AtLimit, Direction, Experiment, Model, Place, Recording, View};
+use crate::model::variables::{self, Alias, Variable};
+use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
@@ -38,6 +42,9 @@ pub enum SiLimit {
     Breakdown,
 }
 
+/// A host finds breakdown to a tolerance: closer than this part of the field it has been reached.
+const REACHED: f64 = 1e-9;
+
 /// Continuous states: λ, dλ/dt, the charge and three dashpots.
 const STATE_COUNT: usize = 6;
 
@@ -47,6 +54,7 @@ impl Model for Si {
          losses, strain stiffening and breakdown";
     const GUID: &'static str = guid::text(&GUID);
     const VARIABLES: &'static [Variable<Si>] = &VARIABLES;
+    const ALIASES: &'static [Alias] = &ALIASES;
     const STATES: &'static [u32] = &variables::states::<Si, STATE_COUNT>(&VARIABLES);
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Si, STATE_COUNT>(&VARIABLES);
     /// λ − λ_min, λ_max − λ, and how far the true field is below that of breakdown, as a part of
@@ -61,15 +69,17 @@ impl Model for Si {
     type Scene = SiScene;
     type State = SiState;
     type Motion = SiMotion;
+    type Account = SiAccount;
     type Limit = SiLimit;
     type Sample<N: Number> = Sample<N>;
 
     fn blank() -> SiScene {
-        SiScene::BLANK
+        SiScene::blank()
     }
 
     fn inputs_are_finite(scene: &SiScene) -> bool {
         scene.since.is_finite()
+            && scene.lead.is_finite()
             && scene.force.is_finite()
             && scene.sources.iter().all(|source| source.is_finite())
     }
@@ -106,11 +116,18 @@ impl Model for Si {
 
     fn at_limit(scene: &SiScene, limit: SiLimit) -> AtLimit {
         match limit {
-            SiLimit::Stretch(_) => scene.on_pull_in,
-            SiLimit::Breakdown if scene.on_breakdown == OnBreakdown::Terminate => {
+            SiLimit::Stretch(_) => scene.at_pull_in(),
+            SiLimit::Breakdown if scene.at_breakdown() == OnBreakdown::Terminate => {
                 AtLimit::Terminate
             }
             SiLimit::Breakdown => AtLimit::Hold,
+        }
+    }
+
+    fn choice(limit: SiLimit) -> &'static str {
+        match limit {
+            SiLimit::Stretch(_) => "on_pull_in",
+            SiLimit::Breakdown => "on_breakdown",
         }
     }
 
@@ -142,25 +159,23 @@ impl Model for Si {
         }
         let view = View::<Si> {
             scene,
-            place: Place::At {
-                state: *state,
-                record: Recording::begin(false, *time, state.motion),
-            },
+            place: Place::of_state(*time, *state),
             time,
             collapse: None,
         };
         let broken =
-            scene.on_breakdown != OnBreakdown::Flag && view.breakdown_margin_part() <= tolerance;
+            scene.at_breakdown() != OnBreakdown::Flag && view.breakdown_margin_part() <= tolerance;
         broken.then_some(SiLimit::Breakdown)
     }
 
-    /// Once one of them has vanished, nothing is awaited any more and all stay at 1 or
-    /// λ_max − λ_min.
+    /// Once the motion has ended at one of them, nothing is awaited any more and all stay at 1 or
+    /// λ_max − λ_min; so does that of breakdown where it has been reported.
     fn indicators(view: &View<Si>, indicators: &mut [f64]) {
         let limits = view.scene.limits;
         let stretch = view.state().motion.position;
         let width = limits.upper - limits.lower;
-        let flagged = view.scene.on_breakdown == OnBreakdown::Flag;
+        let flagged =
+            view.scene.at_breakdown() == OnBreakdown::Flag && view.breakdown_time() < f64::INFINITY;
         indicators.copy_from_slice(&if view.collapse.is_some() {
             [width, width, 1.0]
         } else {

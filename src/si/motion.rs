@@ -5,28 +5,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState, internal};
+use super::course::Course;
+use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState};
 use super::{Si, SiLimit};
 use crate::actuator::device::{DeviceMotion, Exchanged, LocalDevice};
 use crate::actuator::scales::Scales;
 use crate::model::Motion;
 use crate::shortest::Shortest;
 use crate::solver::State;
-use crate::solver::coupled::{
-    self, CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES, Stage,
-};
+use crate::solver::coupled::{self, CoupledEquation, Stage};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
-use crate::solver::trajectory::{Failure, Progress, Trajectory};
-
-/// How the motion is followed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-enum Course {
-    /// As the paper's equation.
-    Plain(Box<Trajectory>),
-    /// As that of a real actuator.
-    Coupled(Box<coupled::Trajectory>),
-}
+use crate::solver::trajectory::{Failure, Progress};
 
 /// A motion in SI units.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -54,20 +44,14 @@ impl SiMotion {
     /// Where the stretch is counted from, and the stretch from there.
     #[must_use]
     pub fn stretch_from_origin(&self) -> (Double, f64) {
-        match &self.course {
-            Course::Plain(trajectory) => (Double::ZERO, trajectory.position()),
-            Course::Coupled(trajectory) => trajectory.position_from_origin(),
-        }
+        self.course.position_from_origin()
     }
 
     /// The present state in SI units.
     #[must_use]
     pub fn state(&self) -> SiState {
-        let State { position, rate } = match &self.course {
-            Course::Plain(trajectory) => trajectory.state(),
-            Course::Coupled(trajectory) => trajectory.state(),
-        };
-        let states = self.internal();
+        let State { position, rate } = self.course.state();
+        let states = self.course.internal();
         let device = &self.motion.device;
         let mut places = states.into_iter();
         let charge = if device.has_charge_state() {
@@ -91,13 +75,6 @@ impl SiMotion {
         }
     }
 
-    fn internal(&self) -> [f64; MOST_STATES] {
-        match &self.course {
-            Course::Plain(_) => [0.0; MOST_STATES],
-            Course::Coupled(trajectory) => trajectory.internal(),
-        }
-    }
-
     /// The derivative of the charge in A, from its polynomial, where it is a state that has moved.
     #[must_use]
     pub fn charging(&self) -> Option<f64> {
@@ -112,23 +89,13 @@ impl SiMotion {
     /// Energies lost and supplied since the start in J; 0 where they are not recorded.
     #[must_use]
     pub fn exchanged(&self) -> Exchanged {
-        Exchanged::from_integrals(&self.integrals().map(|sum| sum * self.scales.energy))
-    }
-
-    fn integrals(&self) -> [f64; MOST_INTEGRALS] {
-        match &self.course {
-            Course::Plain(_) => [0.0; MOST_INTEGRALS],
-            Course::Coupled(trajectory) => trajectory.integrals(),
-        }
+        Exchanged::from_integrals(&self.course.integrals().map(|sum| sum * self.scales.energy))
     }
 
     /// The extremes of the stretch, where they are recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
-        let mut extremes = match &self.course {
-            Course::Plain(trajectory) => trajectory.extremes(),
-            Course::Coupled(trajectory) => trajectory.extremes(),
-        }?;
+        let mut extremes = self.course.extremes()?;
         if let Some(Extremes { lowest, highest }) = self.earlier {
             extremes.include(lowest);
             extremes.include(highest);
@@ -142,63 +109,15 @@ impl SiMotion {
         self.breakdown
     }
 
-    fn time(&self) -> Double {
-        match &self.course {
-            Course::Plain(trajectory) => *trajectory.time(),
-            Course::Coupled(trajectory) => *trajectory.time(),
-        }
-    }
-
-    /// A course from this state on, at the time of the clock.
-    fn course(
-        scene: &SiScene,
-        motion: &DeviceMotion,
-        scales: &Scales,
-        state: &SiState,
-        (clock, tolerance): (Double, f64),
-    ) -> Course {
-        let start = State {
-            position: state.motion.position,
-            rate: state.motion.rate * scales.time.value(),
-        };
-        let time = scales.time(clock);
-        if motion.is_plain() {
-            return Course::Plain(Box::new(Trajectory::new(
-                start,
-                time,
-                scene.limits,
-                tolerance,
-            )));
-        }
-        let full = FullState {
-            internal: internal(
-                &motion.device,
-                state.charge / scales.charge,
-                &state.dashpots,
-            ),
-            ..FullState::of(start)
-        };
-        Course::Coupled(Box::new(coupled::Trajectory::new(
-            full,
-            time,
-            scene.limits,
-            tolerance,
-        )))
-    }
-
     /// The present as the motion that is followed sees it.
     fn at_present<T>(&self, look: impl FnOnce(&LocalDevice, &Stage) -> T) -> T {
         let (origin, position) = self.stretch_from_origin();
-        let rate = match &self.course {
-            Course::Plain(trajectory) => trajectory.rate(),
-            Course::Coupled(trajectory) => trajectory.rate(),
-        };
         let stage = Stage {
             position,
-            rate,
-            internal: self.internal(),
+            rate: self.course.state().rate,
+            internal: self.course.internal(),
         };
-        look(&self.motion.at(&self.time(), &origin), &stage)
+        look(&self.motion.at(&self.course.time(), &origin), &stage)
     }
 
     /// Follows what the scene has become. Where only inputs have changed, the course goes on
@@ -210,14 +129,10 @@ impl SiMotion {
         let same = motion.device == self.motion.device
             && motion.records_energy == self.motion.records_energy
             && scales == self.scales;
-        let source = self.at_present(|local, _| local.load(0.0).source);
-        let before = source * self.scales.source(self.motion.device.port.source);
+        let before = self.at_present(|local, _| local.load(0.0).source);
         if same {
             self.motion = motion;
-            match &mut self.course {
-                Course::Plain(trajectory) => trajectory.restart(),
-                Course::Coupled(trajectory) => trajectory.restart(),
-            }
+            self.course.restart();
             self.book_step(before);
             return;
         }
@@ -231,53 +146,31 @@ impl SiMotion {
         };
         let (exchanged, extremes) = (self.exchanged(), self.extremes());
         let begin = (self.clock, self.tolerance);
-        self.course = SiMotion::course(scene, &motion, &scales, &state, begin);
+        self.course
+            .begin_anew(scene, &motion, &scales, &state, begin);
         (self.charge, self.dashpots) = (state.charge, state.dashpots);
         (self.motion, self.scales) = (motion, scales);
         self.earlier = extremes;
-        match &mut self.course {
-            Course::Plain(trajectory) => trajectory.record_extremes_anew(extremes.is_some()),
-            Course::Coupled(trajectory) => {
-                trajectory.record_extremes_anew(extremes.is_some());
-                let sums = exchanged.all().map(|sum| sum / scales.energy);
-                trajectory.jump(&[0.0; MOST_STATES], &sums);
-            }
-        }
+        self.course.record_extremes_anew(extremes.is_some());
+        self.course
+            .book(&exchanged.all().map(|sum| sum / scales.energy));
     }
 
-    /// Books what a step of an ideal source from this value, in its unit, exchanges at once.
+    /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
     fn book_step(&mut self, before: f64) {
         if !self.motion.records_energy {
             return;
         }
-        let previous = before / self.scales.source(self.motion.device.port.source);
-        let exchanged = self.at_present(|local, stage| local.exchanged_by_step(previous, stage));
-        if let Course::Coupled(trajectory) = &mut self.course {
-            trajectory.jump(&[0.0; MOST_STATES], &exchanged.all());
-        }
-    }
-
-    fn advance_course(&mut self, step: f64) -> Result<Progress<coupled::Event>, Failure> {
-        match &mut self.course {
-            Course::Plain(trajectory) => {
-                let progress = trajectory.advance(&self.motion.plain(), step)?;
-                Ok(match progress {
-                    Progress::Whole => Progress::Whole,
-                    Progress::Stopped { limit, after } => Progress::Stopped {
-                        limit: coupled::Event::Limit(limit),
-                        after,
-                    },
-                })
-            }
-            Course::Coupled(trajectory) => trajectory.advance(&self.motion, step),
-        }
+        let exchanged = self.at_present(|local, stage| local.exchanged_by_step(before, stage));
+        self.course.book(&exchanged.all());
     }
 }
 
 impl Motion<Si> for SiMotion {
     fn begin(scene: &SiScene, time: Double, tolerance: f64) -> SiMotion {
+        scene.thresholds.prepare();
         let (motion, scales) = (scene.motion(), scene.scales());
-        let course = SiMotion::course(scene, &motion, &scales, &scene.start, (time, tolerance));
+        let course = Course::of(scene, &motion, &scales, &scene.start, (time, tolerance));
         let mut begun = SiMotion {
             clock: time,
             course,
@@ -294,12 +187,7 @@ impl Motion<Si> for SiMotion {
         // An ideal source charges the membrane at once.
         let capacitance =
             begun.at_present(|local, stage| local.capacitance(local.stretch(stage.position)));
-        let before = match motion.device.port.source {
-            crate::actuator::device::Source::Voltage => {
-                scene.start.charge / (scales.capacitance * capacitance)
-            }
-            _ => scene.start.charge,
-        };
+        let before = scene.source_before(&scales, capacitance);
         begun.book_step(before);
         begun
     }
@@ -312,12 +200,12 @@ impl Motion<Si> for SiMotion {
         let target = begin.plus(step).tightened();
         let end = self.scales.time(target);
         loop {
-            let rest = end.since(self.time());
+            let rest = end.since(self.course.time());
             if rest <= 0.0 {
                 self.clock = target;
                 return Ok(Progress::Whole);
             }
-            let progress = self.advance_course(rest);
+            let progress = self.course.advance(&self.motion, rest);
             // What is left of the step, in s.
             let passed = |left: f64| step - left * second;
             match progress {
@@ -326,7 +214,7 @@ impl Motion<Si> for SiMotion {
                     return Ok(Progress::Whole);
                 }
                 Ok(Progress::Stopped { limit, .. }) => {
-                    let after = passed(end.since(self.time()));
+                    let after = passed(end.since(self.course.time()));
                     self.clock = begin.plus(after).tightened();
                     let limit = match limit {
                         coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
@@ -335,7 +223,7 @@ impl Motion<Si> for SiMotion {
                             if let Course::Coupled(trajectory) = &mut self.course {
                                 trajectory.pass_margin();
                             }
-                            if scene.on_breakdown == OnBreakdown::Flag {
+                            if scene.at_breakdown() == OnBreakdown::Flag {
                                 continue;
                             }
                             SiLimit::Breakdown
@@ -344,7 +232,7 @@ impl Motion<Si> for SiMotion {
                     return Ok(Progress::Stopped { limit, after });
                 }
                 Err(failure) => {
-                    let after = passed(end.since(self.time()));
+                    let after = passed(end.since(self.course.time()));
                     self.clock = begin.plus(after).tightened();
                     return Err(match failure {
                         Failure::SubstepTooShort { length, .. } => Failure::SubstepTooShort {
@@ -367,28 +255,17 @@ impl Motion<Si> for SiMotion {
     fn record_anew(&mut self, scene: &SiScene) {
         let records = scene.records_extremes();
         self.earlier = None;
-        match &mut self.course {
-            Course::Plain(trajectory) => trajectory.record_extremes_anew(records),
-            Course::Coupled(trajectory) => trajectory.record_extremes_anew(records),
-        }
+        self.course.record_extremes_anew(records);
     }
 
     fn wait(&mut self, time: Double) {
         self.clock = self.clock.add(time);
-        let time = self.scales.time(time);
-        match &mut self.course {
-            Course::Plain(trajectory) => trajectory.wait(time),
-            Course::Coupled(trajectory) => trajectory.wait(time),
-        }
+        self.course.wait(self.scales.time(time));
     }
 
     fn set_clock(&mut self, scene: &SiScene, time: Double) -> bool {
         self.clock = time;
-        let time = self.scales.time(time);
-        match &mut self.course {
-            Course::Plain(trajectory) => trajectory.set_clock(time),
-            Course::Coupled(trajectory) => trajectory.set_clock(time),
-        }
+        self.course.set_clock(self.scales.time(time));
         scene.depends_on_time()
     }
 
@@ -397,14 +274,7 @@ impl Motion<Si> for SiMotion {
     }
 
     fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
-        let sound = match &self.course {
-            Course::Plain(trajectory) => {
-                trajectory.is_sound() && trajectory.keeps_to(scene.limits, tolerance)
-            }
-            Course::Coupled(trajectory) => {
-                trajectory.is_sound() && trajectory.keeps_to(scene.limits, tolerance)
-            }
-        };
+        let sound = self.course.is_sound(scene, tolerance);
         let positive = |number: f64| number > 0.0 && number.is_finite();
         let Scales {
             time,
@@ -419,7 +289,7 @@ impl Motion<Si> for SiMotion {
         sound
             && self.tolerance == tolerance
             && self.clock.is_finite()
-            && self.motion.is_plain() == matches!(self.course, Course::Plain(_))
+            && self.motion.is_plain() == self.course.is_plain()
             && [
                 time.value(),
                 voltage,

@@ -61,6 +61,8 @@ sample! {
     stretch_acceleration,
     /// λ3 = 1/λ².
     thickness_stretch,
+    /// dλ3/dt = −2λ⁻³ dλ/dt in 1/s.
+    thickness_stretch_rate,
     /// The distance of opposite edges in m.
     edge_distance,
     /// By how much it has grown, in m.
@@ -133,6 +135,11 @@ impl Basis {
 
     pub fn local(&self) -> LocalDevice<'_> {
         LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
+    }
+
+    /// The nondimensional capacitance in a state.
+    pub fn capacitance(&self, state: &SiState) -> f64 {
+        self.local().capacitance(state.motion.position)
     }
 
     /// A state as a nondimensional stage, at this position from the origin.
@@ -218,6 +225,7 @@ impl Basis {
             stretch_rate: rate,
             stretch_acceleration: acceleration * per_second * per_second,
             thickness_stretch: one / square,
+            thickness_stretch_rate: number(-2.0) * rate / (square * stretch),
             edge_distance: stretch * side,
             edge_displacement: (stretch - one) * side,
             edge_velocity: rate * side,

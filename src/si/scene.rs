@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::thresholds::Thresholds;
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial};
@@ -69,45 +70,62 @@ pub struct SiScene {
     pub force: Polynomial,
     /// Amplitude in V, frequency in Hz and phase in rad of the built-in alternating voltage.
     pub alternating: [f64; 3],
+    /// By how much its angle is ahead, in rad, since the frequency was changed on the way.
+    pub lead: f64,
+    /// [`SiScene::on_pull_in`] for hosts that set numbers only: 0 leaves it to that, 1 is
+    /// [`AtLimit::Terminate`].
+    pub terminate_on_pull_in: f64,
+    /// [`SiScene::on_breakdown`] for hosts that set numbers only: 0 leaves it to that, 1, 2, 3 are
+    /// flag, hold, terminate.
+    pub on_breakdown_number: f64,
+    /// Pull-in voltages that are known.
+    #[serde(skip)]
+    pub thresholds: Thresholds,
 }
 
 impl SiScene {
     /// A scene with every number 0, to be filled in.
-    pub(super) const BLANK: SiScene = SiScene {
-        device: SiDevice {
-            layers: 0.0,
-            surfaces: 0.0,
-            load_spring_length: 0.0,
-            branch_times: [0.0; BRANCHES],
-            branch_limits: [0.0; BRANCHES],
-            conduction_field: 0.0,
-            breakdown_field: 0.0,
-            ..SiDevice::sheet(0.0, 0.0, 0.0, [0.0; 2])
-        },
-        stiffening: [0.0; 3],
-        start: SiState {
-            motion: State {
-                position: 0.0,
-                rate: 0.0,
+    pub(super) fn blank() -> SiScene {
+        SiScene {
+            device: SiDevice {
+                layers: 0.0,
+                surfaces: 0.0,
+                load_spring_length: 0.0,
+                branch_times: [0.0; BRANCHES],
+                branch_limits: [0.0; BRANCHES],
+                conduction_field: 0.0,
+                breakdown_field: 0.0,
+                ..SiDevice::sheet(0.0, 0.0, 0.0, [0.0; 2])
             },
-            charge: 0.0,
-            dashpots: [0.0; BRANCHES],
-        },
-        limits: Limits {
-            lower: 0.0,
-            upper: 0.0,
-        },
-        on_pull_in: AtLimit::Hold,
-        on_breakdown: OnBreakdown::Flag,
-        record_extremes: false,
-        extremes_window: 0.0,
-        record_energy: false,
-        source_number: 0.0,
-        since: Double::ZERO,
-        sources: [Polynomial::constant(0.0); 3],
-        force: Polynomial::constant(0.0),
-        alternating: [0.0; 3],
-    };
+            stiffening: [0.0; 3],
+            start: SiState {
+                motion: State {
+                    position: 0.0,
+                    rate: 0.0,
+                },
+                charge: 0.0,
+                dashpots: [0.0; BRANCHES],
+            },
+            limits: Limits {
+                lower: 0.0,
+                upper: 0.0,
+            },
+            on_pull_in: AtLimit::Hold,
+            on_breakdown: OnBreakdown::Flag,
+            record_extremes: false,
+            extremes_window: 0.0,
+            record_energy: false,
+            source_number: 0.0,
+            since: Double::ZERO,
+            sources: [Polynomial::constant(0.0); 3],
+            force: Polynomial::constant(0.0),
+            alternating: [0.0; 3],
+            lead: 0.0,
+            terminate_on_pull_in: 0.0,
+            on_breakdown_number: 0.0,
+            thresholds: Thresholds::default(),
+        }
+    }
 
     /// What the source imposes.
     #[must_use]
@@ -118,6 +136,39 @@ impl SiScene {
             3.0 => Source::Charge,
             _ => self.device.source,
         }
+    }
+
+    /// What happens at a limit of the stretch.
+    #[must_use]
+    pub fn at_pull_in(&self) -> AtLimit {
+        if self.terminate_on_pull_in == 0.0 {
+            self.on_pull_in
+        } else {
+            AtLimit::Terminate
+        }
+    }
+
+    /// What happens at breakdown.
+    #[must_use]
+    pub fn at_breakdown(&self) -> OnBreakdown {
+        match self.on_breakdown_number {
+            1.0 => OnBreakdown::Flag,
+            2.0 => OnBreakdown::Hold,
+            3.0 => OnBreakdown::Terminate,
+            _ => self.on_breakdown,
+        }
+    }
+
+    /// Gives the built-in voltage another frequency in Hz from now on, the time from which the
+    /// inputs count; its phase runs on from where it is.
+    pub fn retune(&mut self, frequency: f64) {
+        let mut drive = Drive::constant(0.0, 0.0);
+        drive.since = self.since;
+        drive.harmonic.frequency = std::f64::consts::TAU * self.alternating[1];
+        drive.lead = self.lead;
+        drive.retune(std::f64::consts::TAU * frequency);
+        self.lead = drive.lead;
+        self.alternating[1] = frequency;
     }
 
     /// The input that is in use.
@@ -174,6 +225,7 @@ impl SiScene {
                 frequency: std::f64::consts::TAU * frequency * time,
                 phase,
             };
+            drive.lead = self.lead;
         }
         drive
     }

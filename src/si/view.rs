@@ -5,8 +5,8 @@ use super::sample::Basis;
 use super::scene::SiScene;
 use super::{Si, SiLimit, SiState};
 use crate::actuator::device::{Elasticity, Exchanged, Source, Stored};
+use crate::actuator::scales::Scales;
 use crate::model::{AtLimit, Model, Place, View};
-use crate::pull_in::device::{Fold, Glassy, dynamic, from_rest, quasi_static};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, Stage};
@@ -98,7 +98,7 @@ impl View<'_, Si> {
     pub fn exchanged(&self) -> Exchanged {
         match self.place {
             Place::On(motion) => motion.exchanged(),
-            Place::At { .. } => Exchanged::from_integrals(&Default::default()),
+            Place::At { account, .. } => Exchanged::from_integrals(&account.exchanged),
         }
     }
 
@@ -153,7 +153,7 @@ impl View<'_, Si> {
         let at = match (self.place, self.collapse) {
             (_, Some(collapse)) if collapse.limit == SiLimit::Breakdown => Some(collapse.time),
             (Place::On(motion), _) => motion.breakdown(),
-            _ => None,
+            (Place::At { account, .. }, _) => account.breakdown,
         };
         at.map_or(f64::INFINITY, |time| time.value())
     }
@@ -166,67 +166,6 @@ impl View<'_, Si> {
             Place::At { record, .. } => record.extremes,
         }
     }
-
-    fn voltage_of(&self, fold: impl FnOnce(&Basis, f64) -> Option<f64>) -> f64 {
-        let (basis, _) = self.basis();
-        let prestress = basis.local().load(0.0_f64).prestress;
-        fold(&basis, prestress).map_or(f64::INFINITY, |voltage| voltage * basis.scales.voltage)
-    }
-
-    /// The static pull-in voltage at the present force, in V; +∞ where there is none.
-    #[must_use]
-    pub fn static_pull_in(&self) -> f64 {
-        self.voltage_of(|basis, prestress| voltage(quasi_static(&basis.device, prestress)))
-    }
-
-    /// That of a step without losses.
-    #[must_use]
-    pub fn dynamic_pull_in(&self) -> f64 {
-        self.voltage_of(|basis, prestress| voltage(dynamic(&basis.device, prestress)))
-    }
-
-    /// That of a step with them.
-    #[must_use]
-    pub fn pull_in_from_rest(&self) -> f64 {
-        self.voltage_of(|basis, prestress| from_rest(&basis.device, prestress))
-    }
-
-    /// The static one of the actuator whose branches have not relaxed.
-    #[must_use]
-    pub fn glassy_static_pull_in(&self) -> f64 {
-        self.voltage_of(|basis, prestress| voltage(Glassy(&basis.device).quasi_static(prestress)))
-    }
-
-    /// That of a step of it.
-    #[must_use]
-    pub fn glassy_dynamic_pull_in(&self) -> f64 {
-        self.voltage_of(|basis, prestress| voltage(Glassy(&basis.device).dynamic(prestress)))
-    }
-
-    /// The stretch to which the actuator snaps at the static pull-in voltage; 0 where it
-    /// escapes or there is no such voltage.
-    #[must_use]
-    pub fn snaps_to(&self) -> f64 {
-        let (basis, _) = self.basis();
-        let prestress = basis.local().load(0.0_f64).prestress;
-        let fold = quasi_static(&basis.device, prestress);
-        fold.and_then(|fold| fold.snaps_to).unwrap_or(0.0)
-    }
-
-    /// By how much the voltage may grow until a step from rest pulls in, or else a slow ramp, in
-    /// V; +∞ where neither does.
-    #[must_use]
-    pub fn pull_in_margin(&self) -> f64 {
-        let limit = self.voltage_of(|basis, prestress| {
-            from_rest(&basis.device, prestress)
-                .or_else(|| voltage(quasi_static(&basis.device, prestress)))
-        });
-        limit - self.supply_voltage().abs()
-    }
-}
-
-fn voltage(fold: Option<Fold>) -> Option<f64> {
-    fold.map(|fold| fold.voltage)
 }
 
 impl SiScene {
@@ -254,19 +193,33 @@ impl SiScene {
                 Shortest(third)
             ));
         }
-        if self.source() != Source::Voltage && self.alternating[0] != 0.0 {
+        let source = self.source();
+        for (other, name, unit) in [
+            (Source::Current, "current", "A"),
+            (Source::Charge, "charge_imposed", "C"),
+        ] {
+            let value = self.sources[super::scene::place(other)].value();
+            if other != source && value != 0.0 {
+                return Err(format!(
+                    "{name} = {} {unit} is given, and the source imposes the {}; set source to \
+                     {}, or {name} to 0",
+                    Shortest(value),
+                    source.name(),
+                    other.name()
+                ));
+            }
+        }
+        if source != Source::Voltage && self.alternating[0] != 0.0 {
             return Err(format!(
                 "V_ac = {} V is added to the supply voltage only, and the source imposes the {}; \
                  set V_ac to 0 or source to voltage",
                 Shortest(self.alternating[0]),
-                if self.source() == Source::Current {
-                    "current"
-                } else {
-                    "charge"
-                }
+                source.name()
             ));
         }
-        let device = self.described().nondimensional();
+        let described = self.described();
+        self.check_size(&Scales::of(&described))?;
+        let device = described.nondimensional();
         if let Elasticity::Gent(locking) = &device.elasticity {
             let [low, high] = [locking.smallest(), locking.largest()].map(|wall| wall.value());
             if !(low < position && position < high) {
@@ -279,19 +232,23 @@ impl SiScene {
                 ));
             }
         }
-        let mut end = limits.lower;
-        while end <= limits.upper {
-            let [value, _] = device.permittivity.at(end);
+        let permittivity = &device.permittivity;
+        for stretch in permittivity
+            .extremes()
+            .into_iter()
+            .filter(|stretch| (limits.lower..=limits.upper).contains(stretch))
+            .chain([limits.lower, limits.upper])
+        {
+            let [value, _] = permittivity.at(stretch);
             if value <= 0.0 {
                 return Err(format!(
                     "k1, k2 and k3 make the permittivity {} of what it is at 1 where the stretch \
                      is {}; it must stay above 0 up to lambda_max = {upper}, set that lower or \
                      other k",
                     Shortest(value),
-                    Shortest(end)
+                    Shortest(stretch)
                 ));
             }
-            end *= 1.02;
         }
         for k in 0..super::scene::BRANCHES {
             let dashpot = self.start.dashpots[k];
@@ -309,6 +266,56 @@ impl SiScene {
         }
         Ok(())
     }
+}
+
+impl SiScene {
+    /// Refuses a voltage or a force that is far beyond what the actuator can bear: a wrong power
+    /// of ten, there or in its geometry and modulus.
+    fn check_size(&self, scales: &Scales) -> Result<(), String> {
+        let voltage = self.sources[0].value().abs() + self.alternating[0].abs();
+        let ideal = self.source() == Source::Voltage && self.device.series_resistance == 0.0;
+        let force = self.force.value();
+        for (given, name, value, most, unit, scale) in [
+            (
+                ideal,
+                "voltage",
+                voltage,
+                MOST_VOLTAGE * scales.voltage,
+                "V",
+                "H*sqrt(mu/eps)",
+            ),
+            (
+                true,
+                "force",
+                force,
+                MOST_FORCE * scales.force,
+                "N",
+                "mu*L*H*n_layers",
+            ),
+        ] {
+            if given && value.abs() > most {
+                return Err(format!(
+                    "{name} = {} {unit} is out of proportion to {scale}; set a value between -{} \
+                     and {1} {unit}, or check H, L, mu, eps_r and n_layers",
+                    Shortest(value),
+                    Shortest(rounded(most))
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Largest voltage at the start, in units of V0: pull-in lies near 0.7.
+const MOST_VOLTAGE: f64 = 10.0;
+
+/// Largest force at the start, in units of P0.
+const MOST_FORCE: f64 = 100.0;
+
+/// A positive number to two digits.
+fn rounded(value: f64) -> f64 {
+    let unit = 10.0_f64.powi(value.log10().floor() as i32 - 1);
+    (value / unit).floor() * unit
 }
 
 impl View<'_, Si> {

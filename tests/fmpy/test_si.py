@@ -1,12 +1,14 @@
 """The FMU in SI units: scenes of the reference, the nondimensional FMU scaled, both interfaces, refusals."""
 
 import json
+import zipfile
 from pathlib import Path
 
 import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from lxml import etree
 
 from dielectric_actuator import Actuator
 
@@ -27,6 +29,22 @@ def scene(name: str) -> tuple[dict[str, float], np.ndarray]:
 
 def test_the_description_is_valid(si_path):
     assert validate_fmu(str(si_path)) == []
+
+
+def test_terminals_follow_the_schema_of_fmi_3(si_path):
+    """FMI 2.0.4 refers to it; each icon that is named is there, and each variable is described."""
+    schema = etree.XMLSchema(etree.parse(Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"))
+    with zipfile.ZipFile(si_path) as archive:
+        root = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+        schema.assertValid(root)
+        icons = [element.get("iconBaseName") for element in root.iter("TerminalGraphicalRepresentation")]
+        assert len(icons) == 3
+        for icon in [*icons, "icon"]:
+            assert archive.read(f"terminalsAndIcons/{icon}.png").startswith(b"\x89PNG")
+    described = {variable.name: variable for variable in fmpy.read_model_description(str(si_path)).modelVariables}
+    members = [element.get("variableName") for element in root.iter("TerminalMemberVariable")]
+    assert {described[name].causality for name in members} == {"input", "output"}
+    assert len(members) == len(set(members)) > 10
 
 
 def test_the_first_click_moves(si_path):
@@ -93,6 +111,32 @@ def test_a_saved_state_goes_on_bit_for_bit(si_path):
                 actuator.advance(1.3e-5)
             ends.append(tuple(actuator.get(name) for name in ("lambda", "charge", "supply_current")))
         assert ends[0] == ends[1]
+
+
+def test_every_preset_moves(si_path):
+    """Inside the FMU and beside it, the same files; each is a material that moves and does not break down."""
+    with zipfile.ZipFile(si_path) as archive:
+        inside = {
+            Path(name).name: archive.read(name)
+            for name in archive.namelist()
+            if name.startswith("resources/presets/") and name.endswith(".ssv")
+        }
+    beside = {path.name: path.read_bytes() for path in (si_path.parent / "presets").rglob("*.ssv")}
+    assert len(inside) >= 5 and inside.items() <= beside.items()
+    for name, text in inside.items():
+        root = etree.fromstring(text)
+        values = {
+            parameter.get("name"): float(parameter[0].get("value"))
+            for parameter in root.iter("{*}Parameter")
+            if parameter[0].get("value") not in ("true", "false")
+        }
+        assert any("ource" in comment.text for comment in root.getroottree().iter(etree.Comment)), name
+        with Actuator(si_path) as actuator:
+            actuator.start(values)
+            before, period = actuator.get("lambda"), 1.0 / actuator.get("frequency")
+            actuator.advance(0.5 * period)
+            assert actuator.get("lambda") - before > 0.005, name
+            assert actuator.get("pulled_in") == actuator.get("broken_down") == 0, name
 
 
 @pytest.mark.parametrize(

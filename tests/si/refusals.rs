@@ -2,23 +2,37 @@
 
 use crate::host::Host;
 use dielectric_elastomer_actuator::instance::Interface;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::model::variables::{Access, Kind, Meant};
+use dielectric_elastomer_actuator::si::Si;
 
-/// A wrong power of ten meets a limit, and the message names the unit.
+/// A wrong power of ten meets a limit, and the message names the range and the unit.
 #[test]
 fn unphysical_values_are_refused() {
     let mut host = Host::initializing(Interface::CoSimulation, &[]);
     for (name, value, part) in [
         ("H", 10.0, "10 um are 10e-6"),
-        ("H", 0.0, "below its minimum"),
-        ("H", -1e-5, "below its minimum"),
+        ("H", 0.01, "above its maximum 0.005 m"),
+        ("H", 0.0, "below its minimum 1e-8 m"),
+        ("H", -1e-5, "set a value from 1e-8 to 0.005 m"),
         ("mu", 0.3, "0.3 MPa are 0.3e6"),
+        ("mu", 303.0, "below its minimum 1000 Pa"),
         ("rho", 1.1, "1.1 g/cm3 are 1100"),
         ("rho", 0.0, "below its minimum"),
         ("R_s", -1.0, "below its minimum"),
+        ("R_s", 1e-9, "neither 0 nor above its minimum 0.001 Ohm"),
         ("eps_r", 0.5, "below its minimum"),
         ("L", 20.0, "20 mm are 20e-3"),
         ("voltage", f64::NAN, "not a finite number"),
+        ("voltage", 60e6, "set a value from -200000 to 200000 V"),
+        ("charge_imposed", 1.2, "1 nC is 1e-9"),
+        ("current", 5.0, "1 mA is 1e-3"),
         ("tau_1", 0.0, "3 ms are 3e-3"),
+        ("mu_1", 26.0, "0 or a value from 100 to 1000000000 Pa"),
+        ("E_breakdown", 80.0, "80 V/um are 80e6"),
+        ("E_conduction", 40.0, "40 V/um are 40e6"),
+        ("n_layers", 2.5, "not a whole number"),
+        ("source_number", 1.5, "a whole number from 0 to 3"),
     ] {
         let before = host.get(name);
         let fault = host.set(name, value).expect_err(name);
@@ -26,6 +40,47 @@ fn unphysical_values_are_refused() {
         assert!(text.contains(name) && text.contains(part), "{text}");
         assert_eq!(host.get(name), before);
     }
+}
+
+/// Every number of the table just outside its limits, and no number at all: the message has the
+/// variable, the value, the limit and the unit, and nothing has changed.
+#[test]
+fn every_number_outside_its_limits_is_refused() {
+    let mut host = Host::initializing(Interface::CoSimulation, &[]);
+    let mut count = 0;
+    for variable in Si::VARIABLES {
+        let (Kind::Real { min, max, .. }, Access::Setting { .. } | Access::Input { .. }) =
+            (variable.kind, variable.access)
+        else {
+            continue;
+        };
+        let name = variable.name;
+        let before = host.get(name);
+        let beyond = |limit: f64| limit.abs().max(1e-3) * 0.1;
+        let mut bad = vec![
+            (min - beyond(min), min),
+            (max + beyond(max), max),
+            (f64::NAN, max),
+            (f64::INFINITY, max),
+        ];
+        if let Meant::NoneOrFrom(smallest) = variable.meant {
+            bad.push((0.5 * smallest, smallest));
+        }
+        for (value, limit) in bad {
+            let fault = host.set(name, value).expect_err(name);
+            let unit = match variable.unit.name {
+                "1" => "",
+                unit => unit,
+            };
+            let short = |number: f64| format!("{number:?}").trim_end_matches(".0").to_owned();
+            for part in [name, &short(value), &short(limit), unit] {
+                assert!(fault.text.contains(part), "{part}: {}", fault.text);
+            }
+            assert_eq!(host.get(name), before, "{name}");
+        }
+        count += 1;
+    }
+    assert!(count > 50, "{count}");
 }
 
 #[test]

@@ -178,7 +178,30 @@ impl Spring {
     }
 }
 
+impl Source {
+    /// What it imposes, in a word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Source::Voltage => "voltage",
+            Source::Current => "current",
+            Source::Charge => "charge",
+        }
+    }
+}
+
 impl Permittivity {
+    /// The stretches at which e has an extreme; those that do not exist are not numbers.
+    #[must_use]
+    pub fn extremes(&self) -> [f64; 2] {
+        let [k1, k2, k3] = self.terms;
+        if k3 == 0.0 {
+            return [1.0 - 0.5 * k1 / k2, f64::NAN];
+        }
+        let root = (k2 * k2 - 3.0 * k1 * k3).sqrt();
+        [(root - k2) / (3.0 * k3), (-root - k2) / (3.0 * k3)].map(|x| 1.0 + x)
+    }
+
     /// Whether it keeps its value.
     #[must_use]
     pub fn is_constant(&self) -> bool {

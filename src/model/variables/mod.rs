@@ -69,6 +69,41 @@ pub struct Enumeration {
     pub items: &'static [(&'static str, &'static str)],
 }
 
+/// Which numbers between the limits of a real variable can be meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Meant {
+    /// All of them.
+    Any,
+    /// 0, which stands for "none", and all from this one on.
+    NoneOrFrom(f64),
+    /// Whole ones.
+    Whole,
+}
+
+/// A variable as part of a terminal: what is connected to its like in another unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Member {
+    /// The terminal.
+    pub terminal: &'static Terminal,
+    /// Its name in the terminal, by which variables are connected.
+    pub name: &'static str,
+    /// Whether it flows into the unit: at a connection such variables add up to 0.
+    pub flows: bool,
+}
+
+/// Variables that belong to one physical port.
+#[derive(Debug, PartialEq)]
+pub struct Terminal {
+    /// The name.
+    pub name: &'static str,
+    /// What it is, for people.
+    pub description: &'static str,
+    /// Its place on the icon, whose edges are at −100 and 100: to the right, upwards.
+    pub place: [f64; 2],
+    /// The colour of its lines: red, green, blue.
+    pub colour: [u8; 3],
+}
+
 /// How a variable is read and set.
 pub enum Access<M: Model> {
     /// A function of time that the host prescribes.
@@ -131,6 +166,10 @@ pub struct Variable<M: Model> {
     pub kind: Kind,
     /// The unit of a real one.
     pub unit: &'static Unit,
+    /// Which of the numbers between the limits can be meant.
+    pub meant: Meant,
+    /// The terminal to which it belongs.
+    pub member: Option<Member>,
     /// How it follows from what an engineer would type, where that is likely to be
     /// mistaken for it; for messages.
     pub conversion: Option<&'static str>,
@@ -256,29 +295,61 @@ impl<M: Model> Variable<M> {
     #[inline]
     pub fn check(&self, value: f64) -> Result<(), String> {
         match &self.kind {
-            Kind::Real { min, max, .. } if !(*min..=*max).contains(&value) => {
+            Kind::Real { min, max, .. }
+                if !(*min..=*max).contains(&value) || !self.is_meant(value) =>
+            {
                 Err(self.refusal(value, [*min, *max]))
             }
             _ => Ok(()),
         }
     }
 
+    #[inline]
+    fn is_meant(&self, value: f64) -> bool {
+        match self.meant {
+            Meant::Any => true,
+            Meant::NoneOrFrom(smallest) => value == 0.0 || value >= smallest,
+            Meant::Whole => value.fract() == 0.0,
+        }
+    }
+
     #[cold]
     fn refusal(&self, value: f64, [min, max]: [f64; 2]) -> String {
-        let name = self.name;
-        let [value, min, max] = [value, min, max].map(Shortest);
-        if !value.0.is_finite() {
-            return format!("{name} = {value} is not a finite number");
-        }
-        let refusal = if value.0 < min.0 {
-            format!("{name} = {value} is below its minimum {min}; set a value from {min} on")
-        } else {
-            format!("{name} = {value} is above its maximum {max}; set a value up to {max}")
+        let unit = match self.unit.name {
+            "1" => String::new(),
+            unit => format!(" {unit}"),
         };
-        match self.conversion {
-            Some(conversion) => format!("{refusal} ({conversion})"),
-            None => refusal,
-        }
+        let name = self.name;
+        let [number, low, high] = [value, min, max].map(Shortest);
+        let fault = if !value.is_finite() {
+            "is not a finite number".into()
+        } else if value < min {
+            format!("is below its minimum {low}{unit}")
+        } else if value > max {
+            format!("is above its maximum {high}{unit}")
+        } else {
+            match self.meant {
+                Meant::NoneOrFrom(smallest) => {
+                    format!(
+                        "is neither 0 nor above its minimum {}{unit}",
+                        Shortest(smallest)
+                    )
+                }
+                _ => "is not a whole number".into(),
+            }
+        };
+        let wanted = match self.meant {
+            Meant::NoneOrFrom(smallest) => {
+                format!("0 or a value from {} to {high}{unit}", Shortest(smallest))
+            }
+            Meant::Whole => format!("a whole number from {low} to {high}"),
+            Meant::Any => format!("a value from {low} to {high}{unit}"),
+        };
+        let conversion = match self.conversion {
+            Some(conversion) => format!(" ({conversion})"),
+            None => String::new(),
+        };
+        format!("{name} = {number}{unit} {fault}; set {wanted}{conversion}")
     }
 }
 

@@ -1,7 +1,8 @@
 //! What the rows of the table are made with.
 
 use super::{
-    Access, Causality, Dependencies, Derivatives, Kind, Unit, Variability, Variable, units,
+    Access, Causality, Dependencies, Derivatives, Kind, Meant, Member, Terminal, Unit, Variability,
+    Variable, units,
 };
 use crate::actuator::drive::Polynomial;
 use crate::model::{Model, View};
@@ -73,6 +74,8 @@ impl<M: Model> Variable<M> {
             variability: Variability::Continuous,
             kind,
             unit: &units::ONE,
+            meant: Meant::Any,
+            member: None,
             conversion: None,
             start: Some(0.0),
             derivative_of: None,
@@ -97,6 +100,8 @@ impl<M: Model> Variable<M> {
             variability,
             kind,
             unit: &units::ONE,
+            meant: Meant::Any,
+            member: None,
             conversion: None,
             start: Some(start),
             derivative_of: None,
@@ -128,6 +133,8 @@ impl<M: Model> Variable<M> {
             variability,
             kind,
             unit: &units::ONE,
+            meant: Meant::Any,
+            member: None,
             conversion: None,
             start: None,
             derivative_of: None,
@@ -148,6 +155,32 @@ impl<M: Model> Variable<M> {
     /// The row with what to tell who has typed a value in another unit.
     pub const fn converted(mut self, conversion: &'static str) -> Variable<M> {
         self.conversion = Some(conversion);
+        self
+    }
+
+    /// The row of a number of which only these can be meant.
+    pub const fn meant(mut self, meant: Meant) -> Variable<M> {
+        self.meant = meant;
+        self
+    }
+
+    /// The row as a member of a terminal, by this name.
+    pub const fn member(mut self, terminal: &'static Terminal, name: &'static str) -> Variable<M> {
+        self.member = Some(Member {
+            terminal,
+            name,
+            flows: false,
+        });
+        self
+    }
+
+    /// The row as a member of a terminal that flows into the unit.
+    pub const fn flow(mut self, terminal: &'static Terminal, name: &'static str) -> Variable<M> {
+        self.member = Some(Member {
+            terminal,
+            name,
+            flows: true,
+        });
         self
     }
 

@@ -10,11 +10,13 @@
 //! and the side on which it is decides.
 
 use super::search::bisect;
-use super::{Curves, Point, RELAXED};
+use super::{Curves, Fold, Point, RELAXED};
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Port};
 use crate::solver::State;
-use crate::solver::coupled::{CoupledEquation, FullState, Progress, Stage, Trajectory};
+use crate::solver::coupled::{
+    CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES, Progress, Stage, Trajectory,
+};
 use crate::solver::double::Double;
 use crate::solver::limits::Limits;
 
@@ -26,6 +28,36 @@ const RESOLUTION: f64 = 1e-13;
 
 /// Looks at the motion in each of which it is asked for its energy, at most.
 const MOST_LOOKS: u32 = 100_000;
+
+/// Between which stretches the motion is followed.
+const LIMITS: Limits = Limits {
+    lower: 1e-3,
+    upper: super::LARGEST,
+};
+
+/// At rest at λ = 1, uncharged.
+const REST: FullState = FullState {
+    motion: State {
+        position: 1.0,
+        rate: 0.0,
+    },
+    internal: [0.0; MOST_STATES],
+    integrals: [0.0; MOST_INTEGRALS],
+};
+
+/// The memory in which the motions are followed.
+#[derive(Debug)]
+pub struct Search {
+    trajectory: Trajectory,
+}
+
+impl Default for Search {
+    fn default() -> Search {
+        Search {
+            trajectory: Trajectory::new(REST, Double::ZERO, LIMITS, TOLERANCE),
+        }
+    }
+}
 
 /// The supply voltage above which a step from rest at λ = 1, with the membrane uncharged where
 /// there is a series resistance, pulls the actuator in.
@@ -39,28 +71,28 @@ const MOST_LOOKS: u32 = 100_000;
 ///   resistor, at the static fold if it is the material.
 ///
 /// `None` where the source does not impose the voltage, and where there is no threshold. The
-/// computation follows some forty motions: a tenth of a second.
+/// computation follows some forty motions, in the memory of `search`: a tenth of a second.
 #[must_use]
-pub fn from_rest(device: &Device, prestress: f64) -> Option<f64> {
+pub fn from_rest(device: &Device, prestress: f64, search: &mut Search) -> Option<Fold> {
     let curves = Curves::new(device, RELAXED, prestress)?;
     let fold = curves.quasi_static();
     let has_branches = device.present_branches().next().is_some();
     let lossless = device.damping.is_none() && device.port.resistance == 0.0;
     let dynamic = curves.dynamic();
     if has_branches {
-        return fold.map(|fold| fold.voltage);
+        return fold;
     }
     if lossless {
-        return dynamic.map(|fold| fold.voltage);
+        return dynamic;
     }
     let (Some(fold), Some(dynamic)) = (fold, dynamic) else {
-        return fold.map(|fold| fold.voltage);
+        return fold;
     };
     // What the supply voltage is divided by.
     let point = curves.point(fold.stretch);
     let membrane = curves.equilibrium(point).term[0].max(0.0).sqrt();
     if membrane == 0.0 {
-        return Some(fold.voltage);
+        return Some(fold);
     }
     let divider = fold.voltage / membrane;
     let port = Port {
@@ -75,10 +107,13 @@ pub fn from_rest(device: &Device, prestress: f64) -> Option<f64> {
         breakdown: None,
         ..*device
     };
-    let is_pulled_in = |voltage: f64| pulls_in(&lossy, &curves, prestress, voltage, fold.stretch);
+    let mut is_pulled_in = |voltage: f64| {
+        let trajectory = &mut search.trajectory;
+        pulls_in(trajectory, &lossy, &curves, voltage, fold.stretch)
+    };
     let (mut low, mut high) = (dynamic.voltage.min(membrane), membrane);
     if !is_pulled_in(high * (1.0 - 1e-12)) {
-        return Some(fold.voltage);
+        return Some(fold);
     }
     while high - low > RESOLUTION * high {
         let middle = low.midpoint(high);
@@ -88,12 +123,24 @@ pub fn from_rest(device: &Device, prestress: f64) -> Option<f64> {
             low = middle;
         }
     }
-    Some(divider * high)
+    let saddle = curves.saddle(high * high, fold.stretch)?;
+    Some(Fold {
+        voltage: divider * high,
+        stretch: curves.stretch(saddle),
+        snaps_to: dynamic.snaps_to,
+    })
 }
 
 /// Whether a step to a voltage below the static threshold pulls in, whose fold is at this
 /// stretch.
-fn pulls_in(device: &Device, curves: &Curves, prestress: f64, voltage: f64, fold: f64) -> bool {
+fn pulls_in(
+    trajectory: &mut Trajectory,
+    device: &Device,
+    curves: &Curves,
+    voltage: f64,
+    fold: f64,
+) -> bool {
+    let prestress = curves.prestress;
     let Some(saddle) = curves.saddle(voltage * voltage, fold) else {
         return false;
     };
@@ -104,15 +151,7 @@ fn pulls_in(device: &Device, curves: &Curves, prestress: f64, voltage: f64, fold
         drive: Drive::constant(voltage, prestress),
         records_energy: false,
     };
-    let limits = Limits {
-        lower: 1e-3,
-        upper: super::LARGEST,
-    };
-    let rest = FullState::of(State {
-        position: 1.0,
-        rate: 0.0,
-    });
-    let mut trajectory = Trajectory::new(rest, Double::ZERO, limits, TOLERANCE);
+    trajectory.begin_anew(REST, Double::ZERO, LIMITS, TOLERANCE);
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
     let slowness = 1.0 + (device.damping.linear + 6.0 * device.damping.viscosity) / period;
     let look = 0.5 * period * slowness;

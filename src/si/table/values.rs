@@ -5,6 +5,7 @@ use crate::model::variables::Causality::{Local, Output};
 use crate::model::variables::rows::{UNDECLARED, depends, positive, real, unlimited, value};
 use crate::model::variables::{Derivatives, Kind, units};
 use crate::si::Si;
+use crate::si::thresholds::Threshold;
 use crate::solver::number::Number;
 
 /// A flag as a number.
@@ -19,7 +20,7 @@ const AT_EVENTS: Option<Derivatives<Si>> = Some(Derivatives {
 });
 
 /// The results that are only read.
-pub(super) const VALUES: [Row; 30] = [
+pub(super) const VALUES: [Row; 34] = [
     Row::result(
         "lost_power",
         "power lost at present by viscosity, branches, resistance and leaks",
@@ -142,7 +143,7 @@ pub(super) const VALUES: [Row; 30] = [
         "static pull-in voltage at the present force, branches relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.static_pull_in()),
+        value(|view| view.threshold(Threshold::Static)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -151,7 +152,7 @@ pub(super) const VALUES: [Row; 30] = [
         "pull-in voltage of a step from rest at lambda = 1 without losses; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.dynamic_pull_in()),
+        value(|view| view.threshold(Threshold::Dynamic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -160,7 +161,7 @@ pub(super) const VALUES: [Row; 30] = [
         "pull-in voltage of a step from rest with damping and R_s; with Maxwell branches the static one; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.pull_in_from_rest()),
+        value(|view| view.threshold(Threshold::FromRest)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -169,7 +170,7 @@ pub(super) const VALUES: [Row; 30] = [
         "static pull-in voltage of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.glassy_static_pull_in()),
+        value(|view| view.threshold(Threshold::GlassyStatic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -178,10 +179,26 @@ pub(super) const VALUES: [Row; 30] = [
         "pull-in voltage of a step of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.glassy_dynamic_pull_in()),
+        value(|view| view.threshold(Threshold::GlassyDynamic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
+    Row::result(
+        "lambda3_pull_in_static",
+        "thickness stretch at V_pull_in_static; 0 where there is no such voltage",
+        Local,
+        real(0.0, 1e6, 1.0),
+        value(|view| view.thickness_at(Threshold::Static)),
+        UNDECLARED,
+    ),
+    Row::result(
+        "lambda3_pull_in_dynamic",
+        "thickness stretch at V_pull_in_dynamic; 0 where there is no such voltage",
+        Local,
+        real(0.0, 1e6, 1.0),
+        value(|view| view.thickness_at(Threshold::Dynamic)),
+        UNDECLARED,
+    ),
     Row::result(
         "lambda_snap",
         "stretch to which the actuator snaps at V_pull_in_static; 0 where it escapes or there is no such voltage",
@@ -249,6 +266,25 @@ pub(super) const VALUES: [Row; 30] = [
         Local,
         real(0.0, 1e6, 1.0),
         value(|view| view.extremes().map_or(0.0, |e| e.highest)),
+        UNDECLARED,
+    ),
+    Row::result(
+        "lambda3_lowest",
+        "smallest lambda3 since the recording began; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        value(|view| {
+            view.extremes()
+                .map_or(0.0, |e| 1.0 / (e.highest * e.highest))
+        }),
+        UNDECLARED,
+    ),
+    Row::result(
+        "lambda3_highest",
+        "largest lambda3 since the recording began; 0 where extremes are not recorded",
+        Local,
+        real(0.0, 1e6, 1.0),
+        value(|view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest))),
         UNDECLARED,
     ),
     Row::result(

@@ -115,6 +115,23 @@ impl Trajectory {
     /// between the `limits` of the position. The position is counted from 0.
     #[must_use]
     pub fn new(start: FullState, time: Double, limits: Limits, tolerance: f64) -> Trajectory {
+        Trajectory::with(Vec::with_capacity(CAPACITY), start, time, limits, tolerance)
+    }
+
+    /// [`Trajectory::new`] in the memory of this one.
+    pub fn begin_anew(&mut self, start: FullState, time: Double, limits: Limits, tolerance: f64) {
+        let mut pieces = std::mem::take(&mut self.pieces);
+        pieces.clear();
+        *self = Trajectory::with(pieces, start, time, limits, tolerance);
+    }
+
+    fn with(
+        pieces: Vec<Piece>,
+        start: FullState,
+        time: Double,
+        limits: Limits,
+        tolerance: f64,
+    ) -> Trajectory {
         Trajectory {
             level: Level::new(),
             control: StepControl::new(tolerance),
@@ -123,7 +140,7 @@ impl Trajectory {
             since: time,
             start,
             origin: Double::ZERO,
-            pieces: Vec::with_capacity(CAPACITY),
+            pieces,
             rest: None,
             index: 0,
             now: Double::ZERO,

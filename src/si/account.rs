@@ -1,0 +1,235 @@
+//! What is recorded, beside the extremes, where the host integrates in steps of its own.
+
+use serde::{Deserialize, Serialize};
+
+use super::sample::Basis;
+use super::{OnBreakdown, Si, SiScene, SiState};
+use crate::actuator::device::{Exchanged, Source};
+use crate::actuator::drive::Polynomial;
+use crate::model::{Account, Place, View};
+use crate::solver::State;
+use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
+use crate::solver::double::Double;
+
+/// The energies exchanged, the moment of breakdown, and where the host's last step ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SiAccount {
+    /// Energies lost and supplied since the start in J, where they are recorded.
+    pub exchanged: [f64; MOST_INTEGRALS],
+    /// When the true field was first seen at breakdown, where the motion goes on there.
+    pub breakdown: Option<Double>,
+    time: Double,
+    state: SiState,
+    inputs: Inputs,
+}
+
+/// What drove the actuator, in SI units.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Inputs {
+    /// The input of the source.
+    source: f64,
+    /// The same with the built-in voltage.
+    total: f64,
+    force: f64,
+}
+
+impl Inputs {
+    fn of(scene: &SiScene, time: Double) -> Inputs {
+        let offset = time.since(scene.since);
+        let scales = scene.scales();
+        let drive = scene.drive(&scales);
+        let total = drive.at(&scales.time(time)).voltage(0.0);
+        Inputs {
+            source: scene.source_input().at(offset),
+            total: total * scales.source(scene.source()),
+            force: scene.force.at(offset),
+        }
+    }
+}
+
+impl Default for SiAccount {
+    fn default() -> SiAccount {
+        SiAccount {
+            exchanged: [0.0; MOST_INTEGRALS],
+            breakdown: None,
+            time: Double::ZERO,
+            state: SiState {
+                motion: State {
+                    position: 1.0,
+                    rate: 0.0,
+                },
+                charge: 0.0,
+                dashpots: [1.0; super::scene::BRANCHES],
+            },
+            inputs: Inputs::default(),
+        }
+    }
+}
+
+impl Account<Si> for SiAccount {
+    fn begin(scene: &SiScene, time: Double, state: &SiState) -> SiAccount {
+        let mut account = SiAccount {
+            time,
+            state: *state,
+            ..SiAccount::default()
+        };
+        if scene.record_energy {
+            let basis = Basis::of(scene, &time, Double::ZERO);
+            let before = scene.source_before(&basis.scales, basis.capacitance(state));
+            account.book_step(&basis, state, before);
+            account.inputs = Inputs::of(scene, time);
+        }
+        account.look_for_breakdown(scene, time, state);
+        account
+    }
+
+    fn include_step(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+        if scene.record_energy && time.since(self.time) > 0.0 {
+            self.integrate(scene, time, state);
+        }
+        self.arrive(scene, time, state);
+    }
+
+    fn include(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+        if scene.record_energy {
+            let basis = Basis::of(scene, &time, Double::ZERO);
+            let before = self.inputs.total / basis.scales.source(scene.source());
+            self.book_step(&basis, state, before);
+            self.inputs = Inputs::of(scene, time);
+        }
+        self.arrive(scene, time, state);
+    }
+
+    fn is_valid(&self) -> bool {
+        let SiState {
+            motion: State { position, rate },
+            charge,
+            dashpots,
+        } = self.state;
+        let Inputs {
+            source,
+            total,
+            force,
+        } = self.inputs;
+        let numbers = [position, rate, charge, source, total, force];
+        let mut numbers = numbers.iter().chain(&dashpots).chain(&self.exchanged);
+        numbers.all(|number| number.is_finite())
+            && self.time.is_finite()
+            && self.breakdown.is_none_or(|time| time.is_finite())
+    }
+}
+
+impl SiAccount {
+    fn arrive(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+        (self.time, self.state) = (time, *state);
+        self.look_for_breakdown(scene, time, state);
+    }
+
+    fn look_for_breakdown(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+        let awaited = scene.device.breakdown_field > 0.0 && self.breakdown.is_none();
+        if !awaited || scene.at_breakdown() != OnBreakdown::Flag {
+            return;
+        }
+        let view = View::<Si> {
+            scene,
+            place: Place::of_state(time, *state),
+            time: &time,
+            collapse: None,
+        };
+        if view.breakdown_margin_part() <= super::REACHED {
+            self.breakdown = Some(time);
+        }
+    }
+
+    /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
+    fn book_step(&mut self, basis: &Basis, state: &SiState, before: f64) {
+        let stage = basis.stage(state, state.motion.position);
+        let exchanged = basis.local().exchanged_by_step(before, &stage);
+        self.add(&exchanged, basis.scales.energy);
+    }
+
+    fn add(&mut self, exchanged: &Exchanged, weight: f64) {
+        for (sum, part) in self.exchanged.iter_mut().zip(exchanged.all()) {
+            *sum += weight * part;
+        }
+    }
+
+    /// Sums up the powers over the host's step by three Gauss points: each state on the cubic
+    /// through its values and slopes at both ends, each input on the straight line between its own.
+    fn integrate(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+        const NODE: f64 = 0.387_298_334_620_741_7; // √15/10
+        let mut basis = Basis::of(scene, &self.time, Double::ZERO);
+        let span = time.since(self.time) / basis.scales.time.value();
+        let (before, now) = (self.inputs, Inputs::of(scene, time));
+        let line = |from: f64, to: f64, unit: f64| {
+            let mut line = Polynomial::constant(from / unit);
+            line.set_derivative(1, (to - from) / (unit * span));
+            line
+        };
+        let unit = basis.scales.source(scene.source());
+        basis.drive.since = basis.time;
+        basis.drive.voltage = line(before.source, now.source, unit);
+        basis.drive.prestress = line(before.force, now.force, basis.scales.force);
+        let local = basis.local();
+        let end = |state: &SiState, offset: f64| {
+            let stage = basis.stage(state, state.motion.position);
+            let load = local.load(offset);
+            let slopes = local.slopes(load, &stage).map(|slope| slope.value);
+            (stage, local.acceleration(load, &stage).value, slopes)
+        };
+        let (first, last) = (end(&self.state, 0.0), end(state, span));
+        let mut sum = [0.0; MOST_INTEGRALS];
+        for (part, weight) in [
+            (0.5 - NODE, 5.0 / 18.0),
+            (0.5, 8.0 / 18.0),
+            (0.5 + NODE, 5.0 / 18.0),
+        ] {
+            let between = |from: [f64; 2], to: [f64; 2]| cubic(from, to, span, part);
+            let stage = Stage {
+                position: between(
+                    [first.0.position, first.0.rate],
+                    [last.0.position, last.0.rate],
+                ),
+                rate: between([first.0.rate, first.1], [last.0.rate, last.1]),
+                internal: std::array::from_fn(|k| {
+                    between(
+                        [first.0.internal[k], first.2[k]],
+                        [last.0.internal[k], last.2[k]],
+                    )
+                }),
+            };
+            let offset = part * span;
+            let slopes = local.slopes(local.load(offset), &stage);
+            let powers = local.powers_at(offset, &stage, &slopes.map(|slope| slope.value));
+            for (sum, power) in sum.iter_mut().zip(powers.all()) {
+                *sum += weight * power;
+            }
+        }
+        let energy = span * basis.scales.energy;
+        self.add(&Exchanged::from_integrals(&sum), energy);
+        self.inputs = now;
+    }
+}
+
+/// The cubic through values and slopes at both ends of a span, at a part of it.
+fn cubic([from, begin]: [f64; 2], [to, end]: [f64; 2], span: f64, part: f64) -> f64 {
+    let left = 1.0 - part;
+    let growth = part * part * (3.0 - 2.0 * part);
+    from + (to - from) * growth + span * part * left * (begin * left - end * part)
+}
+
+impl SiScene {
+    /// What an ideal source was before the start, nondimensional: it charges the actuator from
+    /// the charge at the start.
+    pub(super) fn source_before(
+        &self,
+        scales: &crate::actuator::scales::Scales,
+        capacitance: f64,
+    ) -> f64 {
+        let charge = self.start.charge / scales.charge;
+        match self.source() {
+            Source::Voltage => charge / capacitance,
+            Source::Current | Source::Charge => charge,
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! How a motion in SI units is followed in nondimensional numbers: as the paper's equation where
+//! it is that, or as that of a real actuator.
+
+use serde::{Deserialize, Serialize};
+
+use super::scene::{SiScene, SiState, internal};
+use crate::actuator::device::DeviceMotion;
+use crate::actuator::scales::Scales;
+use crate::solver::State;
+use crate::solver::coupled::{self, FullState, MOST_INTEGRALS, MOST_STATES};
+use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
+use crate::solver::trajectory::{Failure, Progress, Trajectory};
+
+/// How the motion is followed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) enum Course {
+    /// As the paper's equation.
+    Plain(Box<Trajectory>),
+    /// As that of a real actuator.
+    Coupled(Box<coupled::Trajectory>),
+}
+
+/// Calls the same method of either trajectory.
+macro_rules! either {
+    ($course:expr, $trajectory:ident => $call:expr) => {
+        match $course {
+            Course::Plain($trajectory) => $call,
+            Course::Coupled($trajectory) => $call,
+        }
+    };
+}
+
+impl Course {
+    /// A course from this state on, at a time in s.
+    pub fn of(
+        scene: &SiScene,
+        motion: &DeviceMotion,
+        scales: &Scales,
+        state: &SiState,
+        (clock, tolerance): (Double, f64),
+    ) -> Course {
+        let start = full_state(motion, scales, state);
+        let time = scales.time(clock);
+        if motion.is_plain() {
+            let plain = Trajectory::new(start.motion, time, scene.limits, tolerance);
+            Course::Plain(Box::new(plain))
+        } else {
+            let coupled = coupled::Trajectory::new(start, time, scene.limits, tolerance);
+            Course::Coupled(Box::new(coupled))
+        }
+    }
+
+    /// The same in place of this one: only where the motion becomes one of the other kind is
+    /// memory allocated.
+    pub fn begin_anew(
+        &mut self,
+        scene: &SiScene,
+        motion: &DeviceMotion,
+        scales: &Scales,
+        state: &SiState,
+        (clock, tolerance): (Double, f64),
+    ) {
+        let start = full_state(motion, scales, state);
+        let time = scales.time(clock);
+        match self {
+            Course::Plain(plain) if motion.is_plain() => {
+                **plain = Trajectory::new(start.motion, time, scene.limits, tolerance);
+            }
+            Course::Coupled(coupled) if !motion.is_plain() => {
+                coupled.begin_anew(start, time, scene.limits, tolerance);
+            }
+            other => *other = Course::of(scene, motion, scales, state, (clock, tolerance)),
+        }
+    }
+
+    pub fn is_plain(&self) -> bool {
+        matches!(self, Course::Plain(_))
+    }
+
+    /// Where the stretch is counted from, and the stretch from there.
+    pub fn position_from_origin(&self) -> (Double, f64) {
+        match self {
+            Course::Plain(trajectory) => (Double::ZERO, trajectory.position()),
+            Course::Coupled(trajectory) => trajectory.position_from_origin(),
+        }
+    }
+
+    pub fn state(&self) -> State {
+        either!(self, trajectory => trajectory.state())
+    }
+
+    pub fn time(&self) -> Double {
+        either!(self, trajectory => *trajectory.time())
+    }
+
+    /// The first-order states.
+    pub fn internal(&self) -> [f64; MOST_STATES] {
+        match self {
+            Course::Plain(_) => [0.0; MOST_STATES],
+            Course::Coupled(trajectory) => trajectory.internal(),
+        }
+    }
+
+    /// Energies exchanged since the start, where they are recorded.
+    pub fn integrals(&self) -> [f64; MOST_INTEGRALS] {
+        match self {
+            Course::Plain(_) => [0.0; MOST_INTEGRALS],
+            Course::Coupled(trajectory) => trajectory.integrals(),
+        }
+    }
+
+    /// Adds energies that are exchanged at once.
+    pub fn book(&mut self, exchanged: &[f64; MOST_INTEGRALS]) {
+        if let Course::Coupled(trajectory) = self {
+            trajectory.jump(&[0.0; MOST_STATES], exchanged);
+        }
+    }
+
+    pub fn extremes(&self) -> Option<Extremes> {
+        either!(self, trajectory => trajectory.extremes())
+    }
+
+    pub fn record_extremes_anew(&mut self, records: bool) {
+        either!(self, trajectory => trajectory.record_extremes_anew(records));
+    }
+
+    pub fn restart(&mut self) {
+        either!(self, trajectory => trajectory.restart());
+    }
+
+    pub fn wait(&mut self, time: Double) {
+        either!(self, trajectory => trajectory.wait(time));
+    }
+
+    pub fn set_clock(&mut self, time: Double) {
+        either!(self, trajectory => trajectory.set_clock(time));
+    }
+
+    /// Follows the motion for a nondimensional time.
+    pub fn advance(
+        &mut self,
+        motion: &DeviceMotion,
+        step: f64,
+    ) -> Result<Progress<coupled::Event>, Failure> {
+        match self {
+            Course::Plain(trajectory) => {
+                let progress = trajectory.advance(&motion.plain(), step)?;
+                Ok(match progress {
+                    Progress::Whole => Progress::Whole,
+                    Progress::Stopped { limit, after } => Progress::Stopped {
+                        limit: coupled::Event::Limit(limit),
+                        after,
+                    },
+                })
+            }
+            Course::Coupled(trajectory) => trajectory.advance(motion, step),
+        }
+    }
+
+    /// Whether its numbers fit together and keep to the scene.
+    pub fn is_sound(&self, scene: &SiScene, tolerance: f64) -> bool {
+        either!(self, trajectory => trajectory.is_sound() && trajectory.keeps_to(scene.limits, tolerance))
+    }
+}
+
+/// A state in nondimensional numbers.
+fn full_state(motion: &DeviceMotion, scales: &Scales, state: &SiState) -> FullState {
+    FullState {
+        internal: internal(
+            &motion.device,
+            state.charge / scales.charge,
+            &state.dashpots,
+        ),
+        ..FullState::of(State {
+            position: state.motion.position,
+            rate: state.motion.rate * scales.time.value(),
+        })
+    }
+}

@@ -1,0 +1,310 @@
+//! Model exchange: a host that integrates by the classical Runge–Kutta method.
+
+use crate::host::{Host, row};
+use dielectric_elastomer_actuator::instance::Interface;
+use dielectric_elastomer_actuator::model::Model;
+use dielectric_elastomer_actuator::si::Si;
+
+const STATES: usize = Si::STATES.len();
+
+/// A host that integrates.
+struct Integrator {
+    host: Host,
+    state: [f64; STATES],
+}
+
+impl Integrator {
+    fn begun(values: &[(&str, f64)]) -> Integrator {
+        let mut host = Host::initializing(Interface::ModelExchange, values);
+        host.instance.exit_initialization().expect("a start");
+        let mut begun = Integrator {
+            host,
+            state: [0.0; STATES],
+        };
+        begun.handle_events();
+        begun
+    }
+
+    /// Returns whether the simulation is to end.
+    fn handle_events(&mut self) -> bool {
+        let instance = &mut self.host.instance;
+        let update = instance.new_discrete_states().expect("an update");
+        instance.enter_continuous_time();
+        instance
+            .continuous_states(&mut self.state)
+            .expect("the states");
+        update.terminate
+    }
+
+    fn slopes(&mut self, offset: f64, state: &[f64; STATES]) -> [f64; STATES] {
+        let time = self.host.time + offset;
+        let instance = &mut self.host.instance;
+        instance.set_time(time).expect("a time");
+        instance.set_continuous_states(state).expect("states");
+        let mut slopes = [0.0; STATES];
+        instance.derivatives(&mut slopes).expect("derivatives");
+        slopes
+    }
+
+    /// Returns whether an event is to be handled.
+    fn step(&mut self, step: f64) -> bool {
+        let start = self.state;
+        let moved = |slopes: &[f64; STATES], part: f64| -> [f64; STATES] {
+            std::array::from_fn(|k| start[k] + part * step * slopes[k])
+        };
+        let first = self.slopes(0.0, &start);
+        let second = self.slopes(0.5 * step, &moved(&first, 0.5));
+        let third = self.slopes(0.5 * step, &moved(&second, 0.5));
+        let fourth = self.slopes(step, &moved(&third, 1.0));
+        for k in 0..STATES {
+            let mean = (first[k] + 2.0 * (second[k] + third[k]) + fourth[k]) / 6.0;
+            self.state[k] += step * mean;
+        }
+        self.host.time += step;
+        let instance = &mut self.host.instance;
+        instance.set_time(self.host.time).expect("a time");
+        instance.set_continuous_states(&self.state).expect("states");
+        instance.completed_integrator_step().expect("a step")
+    }
+
+    fn indicators(&self) -> [f64; 3] {
+        let mut indicators = [0.0; 3];
+        self.host
+            .instance
+            .event_indicators(&mut indicators)
+            .expect("indicators");
+        indicators
+    }
+}
+
+/// Numbers between 0 and 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.next()
+    }
+
+    fn chance(&mut self) -> bool {
+        self.next() < 0.4
+    }
+}
+
+/// A device of everything, where each part is there or not; its period is near 5 µs.
+fn scene(seed: u64) -> Vec<(&'static str, f64)> {
+    let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
+    random.next();
+    let mut all = vec![
+        ("record_energy", 1.0),
+        ("record_extremes", 1.0),
+        ("lambda_max", 2.5),
+        ("voltage", random.between(50.0, 400.0)),
+    ];
+    let laws: &[_] = match seed % 4 {
+        0 => &[("J_m", 20.0, 120.0)],
+        1 => &[("kappa2", -0.1, 0.1), ("kappa3", 0.0, 0.05)],
+        _ => &[],
+    };
+    let parts = [
+        ("k1", -0.1, 0.1),
+        ("k2", -0.1, 0.1),
+        ("eta", 0.001, 0.05),
+        ("b", 1e-9, 1e-7),
+        ("R_s", 1e6, 1e8),
+        ("G_p", 1e-10, 1e-8),
+        ("sigma", 1e-8, 1e-6),
+        ("force", -2e-5, 4e-5),
+        ("m_load", 1e-14, 1e-12),
+        ("k_load", 0.1, 2.0),
+        ("mu_1", 1e4, 4e5),
+        ("mu_2", 1e4, 4e5),
+        ("mu_3", 1e4, 4e5),
+    ];
+    for (name, low, high) in laws.iter().copied().chain(parts) {
+        if random.chance() {
+            all.push((name, random.between(low, high)));
+        }
+    }
+    for (time, start) in [
+        ("tau_1", "xi1_start"),
+        ("tau_2", "xi2_start"),
+        ("tau_3", "xi3_start"),
+    ] {
+        all.push((time, random.between(1e-6, 1e-5)));
+        all.push((start, random.between(0.98, 1.02)));
+    }
+    match seed % 5 {
+        0 => all.extend([("source", 2.0), ("current", random.between(0.0, 4e-6))]),
+        1 => all.extend([
+            ("source", 3.0),
+            ("charge_imposed", random.between(0.0, 1e-11)),
+        ]),
+        _ => all.extend([
+            ("V_ac", random.between(0.0, 100.0)),
+            ("f_ac", random.between(1e5, 4e5)),
+        ]),
+    }
+    all
+}
+
+/// Random devices: the host's integration against ours, in states, ports, energies and extremes.
+#[test]
+fn a_host_that_integrates_meets_the_co_simulation() {
+    for seed in 0..40 {
+        let values = scene(seed);
+        let mut ours = Host::begun(&values);
+        let mut theirs = Integrator::begun(&values);
+        let step = 2.5e-9;
+        for round in 0..8 {
+            for _ in 0..300 {
+                let event = theirs.step(step);
+                assert!(!event, "{seed}: {values:?}");
+            }
+            ours.step(300.0 * step);
+            for (name, size) in [
+                ("lambda", 1.0),
+                ("lambda_dot", 1e5),
+                ("edge_acceleration", 1e6),
+                ("charge", 1e-11),
+                ("supply_current", 1e-5),
+                ("electrical_power", 1e-2),
+                ("xi1", 1.0),
+                ("xi2", 1.0),
+                ("xi3", 1.0),
+                ("lost_power", 1e-2),
+                ("frequency", 1e5),
+            ] {
+                let [a, b] = [ours.get(name), theirs.host.get(name)];
+                assert!(
+                    (a - b).abs() < 1e-8 * size,
+                    "{seed} {round} {name}: {a} {b} {values:?}"
+                );
+            }
+            for name in [
+                "lost_damping",
+                "lost_branches",
+                "lost_resistance",
+                "lost_leakage",
+                "supplied_electrical",
+                "supplied_mechanical",
+            ] {
+                let [a, b] = [ours.get(name), theirs.host.get(name)];
+                assert!(
+                    (a - b).abs() < 1e-6 * 1e-9,
+                    "{seed} {round} {name}: {a} {b} {values:?}"
+                );
+            }
+            for name in ["lambda_lowest", "lambda_highest"] {
+                let [a, b] = [ours.get(name), theirs.host.get(name)];
+                assert!((a - b).abs() < 1e-8, "{seed} {name}: {a} {b}");
+            }
+        }
+    }
+}
+
+/// A supply that is stepped at an event: what the step exchanges is booked.
+#[test]
+fn a_step_of_the_source_at_an_event_is_booked() {
+    let values = [("record_energy", 1.0), ("charge_start", 1e-12)];
+    let mut ours = Host::begun(&values);
+    let mut theirs = Integrator::begun(&values);
+    for voltage in [500.0, 200.0, 0.0, 450.0] {
+        for _ in 0..100 {
+            theirs.step(5e-9);
+        }
+        ours.step(5e-7);
+        theirs.host.instance.enter_event_mode();
+        theirs.host.set("voltage", voltage).expect("a voltage");
+        theirs.handle_events();
+        ours.set("voltage", voltage).expect("a voltage");
+    }
+    theirs.step(5e-9);
+    ours.step(5e-9);
+    for name in ["supplied_electrical", "lost_resistance"] {
+        let [a, b] = [ours.get(name), theirs.host.get(name)];
+        assert!((a - b).abs() < 1e-7 * a.abs(), "{name}: {a} {b}");
+        assert!(a > 1e-9, "{name}: {a}");
+    }
+}
+
+/// Breakdown is awaited as an event whatever follows from it, and reported.
+#[test]
+fn breakdown_is_seen_in_model_exchange() {
+    for choice in [1.0, 2.0, 3.0] {
+        let values = [("E_breakdown", 62e6), ("on_breakdown_number", choice)];
+        let mut ours = Host::begun(&values[..1]);
+        ours.follow(1e-6, 1e-8);
+        let time = ours.get("breakdown_time");
+        assert!(time > 0.0 && time < 1e-6, "{time}");
+        let mut theirs = Integrator::begun(&values);
+        let mut ended = false;
+        while theirs.host.time < 2e-6 && !ended {
+            let before = theirs.indicators()[2];
+            let event = theirs.step(1e-9) || before * theirs.indicators()[2] <= 0.0;
+            if event {
+                theirs.host.instance.enter_event_mode();
+                ended = theirs.handle_events();
+                let found = theirs.host.get("breakdown_time");
+                assert!((found - time).abs() < 1.1e-9, "{found} {time}");
+                assert_eq!(theirs.host.get("broken_down"), 1.0);
+                assert_eq!(theirs.indicators()[2], 1.0);
+            }
+        }
+        assert_eq!(ended, choice == 3.0);
+        assert_eq!(theirs.host.get("broken_down"), 1.0);
+        let moves = theirs.host.get("lambda_dot") != 0.0;
+        assert_eq!(moves, choice != 2.0, "{choice}");
+    }
+}
+
+/// States may be set by their value references, as `set_continuous_states` does.
+#[test]
+fn states_are_set_by_value_reference() {
+    let mut integrator = Integrator::begun(&[("R_s", 1e7), ("mu_1", 1e5), ("tau_1", 1e-6)]);
+    for (name, value) in [
+        ("lambda", 1.04),
+        ("lambda_dot", 2e4),
+        ("charge_state", 3e-12),
+        ("xi1", 1.01),
+    ] {
+        integrator.host.set(name, value).expect(name);
+    }
+    let mut states = [0.0; STATES];
+    let host = &integrator.host;
+    host.instance
+        .continuous_states(&mut states)
+        .expect("states");
+    let place = |name: &str| Si::STATES.iter().position(|state| *state == row(name).0);
+    for (name, value) in [("lambda", 1.04), ("charge_state", 3e-12), ("xi1", 1.01)] {
+        assert_eq!(states[place(name).expect("a state")], value);
+        assert!((host.get(name) - value).abs() < 1e-15 * value);
+    }
+    assert!((host.get("charge") - 3e-12).abs() < 1e-26);
+}
+
+/// A changed frequency leaves the voltage where it is.
+#[test]
+fn the_phase_runs_on_through_a_changed_frequency() {
+    let mut host = Host::begun(&[("V_ac", 100.0), ("f_ac", 2e5), ("phase_ac", 0.3)]);
+    let mut angle = 0.3;
+    let mut frequency = 2e5;
+    for k in 0..200 {
+        host.step(0.7e-6);
+        angle += std::f64::consts::TAU * frequency * 0.7e-6;
+        let expected = 600.0 + 100.0 * f64::sin(angle);
+        let before = host.get("supply_voltage");
+        assert!((before - expected).abs() < 1e-9, "{k}: {before} {expected}");
+        frequency = 1e5 + 1e3 * f64::from(k);
+        host.set("f_ac", frequency).expect("a frequency");
+        let after = host.get("supply_voltage");
+        assert!((after - before).abs() < 1e-9, "{k}: {before} {after}");
+    }
+}
