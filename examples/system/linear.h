@@ -11,6 +11,9 @@
  * before it includes this file. Inputs may be polynomials of time (fmi2SetRealInputDerivatives). The step is
  * then solved by the Taylor series of the states, exactly but for rounding: each derivative of a linear system
  * follows from the one before. The same series gives the derivatives of the outputs.
+ *
+ * A model that measures, that is, whose u is a nonlinear function of its inputs, defines N_SEEN and `see` too:
+ * u and its derivatives up to the order `last`, from the inputs and theirs.
  */
 #include <math.h>
 #include <stdlib.h>
@@ -28,28 +31,38 @@ typedef struct {
 } Instance;
 
 static const double start[N_VALUES] = START;
-static const double no_input[N_INPUTS];
 
 static double *states(Instance *m) { return m->value + N_INPUTS + N_OUTPUTS; }
 static const double *parameters(const Instance *m) { return m->value + N_INPUTS + N_OUTPUTS + N_STATES; }
-static const double *input(const Instance *m, int order) { return order < ORDERS ? m->input[order] : no_input; }
 
-/* Derivatives of the states at the present time, up to the order `last`. */
-static void series(Instance *m, int last, double x[][N_STATES]) {
+#ifndef N_SEEN
+#define N_SEEN N_INPUTS
+static void see(const double *p, int last, double inputs[][N_INPUTS], double u[][N_SEEN]) {
+    (void)p, memcpy(u, inputs, (last + 1) * sizeof *u);
+}
+#endif
+
+/* Derivatives of u and of the states at the present time, up to the order `last`. */
+static void series(Instance *m, int last, double u[][N_SEEN], double x[][N_STATES]) {
+    double inputs[TERMS + 1][N_INPUTS] = {{0}};
+    memcpy(inputs, m->input, sizeof m->input);
+    see(parameters(m), last, inputs, u);
     memcpy(x[0], states(m), sizeof x[0]);
     for (int k = 0; k < last; k++)
-        rates(parameters(m), input(m, k), x[k], x[k + 1]);
+        rates(parameters(m), u[k], x[k], x[k + 1]);
 }
 
 static void refresh(Instance *m) {
+    double u[1][N_SEEN], x[1][N_STATES];
+    series(m, 0, u, x);
     memcpy(m->value, m->input[0], sizeof m->input[0]);
-    outputs(parameters(m), m->input[0], states(m), m->value + N_INPUTS);
+    outputs(parameters(m), u[0], x[0], m->value + N_INPUTS);
 }
 
 /* Over a span that is short for the system. */
 static void advance(Instance *m, double span) {
-    double x[TERMS + 1][N_STATES];
-    series(m, TERMS, x);
+    double u[TERMS + 1][N_SEEN], x[TERMS + 1][N_STATES];
+    series(m, TERMS, u, x);
     for (int i = 0; i < N_STATES; i++) {
         double sum = 0;
         for (int k = TERMS; k > 0; k--)
@@ -133,9 +146,9 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     for (size_t i = 0; i < n; i++) {
         if (vr[i] < N_INPUTS || vr[i] >= N_INPUTS + N_OUTPUTS || order[i] < 1 || order[i] > TERMS)
             return fmi2Error;
-        double x[TERMS + 1][N_STATES], y[N_OUTPUTS];
-        series(c, order[i], x);
-        outputs(parameters(c), input(c, order[i]), x[order[i]], y);
+        double u[TERMS + 1][N_SEEN], x[TERMS + 1][N_STATES], y[N_OUTPUTS];
+        series(c, order[i], u, x);
+        outputs(parameters(c), u[order[i]], x[order[i]], y);
         value[i] = y[vr[i] - N_INPUTS];
     }
     return fmi2OK;
