@@ -1,4 +1,4 @@
-"""The FMU in SI units: scenes of the reference, the nondimensional FMU scaled, both interfaces, refusals."""
+"""The FMU in SI units: the nondimensional FMU scaled, both interfaces, refusals."""
 
 import json
 import zipfile
@@ -10,21 +10,8 @@ import pytest
 from fmpy.validation import validate_fmu
 from lxml import etree
 
+from device_scenes import REFERENCE, device_scene
 from dielectric_actuator import Actuator
-
-REFERENCE = Path(__file__).parents[1] / "reference" / "device"
-PLAIN = {"gamma_s": 0.0, "tau_s": 0.0, "E_s": 0.0, "voltage": 0.0}
-"""What the default device has and a scene may not."""
-
-NAMES = {"epsr": "eps_r", "n": "n_layers", "V": "voltage", "P": "force", "k": "k_load", "m": "m_load", "l_k": "l_load"}
-
-
-def scene(name: str) -> tuple[dict[str, float], np.ndarray]:
-    """The start values of a scene, and rows t, stretch."""
-    content = json.loads((REFERENCE / f"{name}.json").read_text())
-    given = {NAMES.get(key, key): float(value) for key, value in content["parameters_SI"].items()}
-    rows = [[float(row["t_s"]), float(row["lambda"])] for row in content["rows"]]
-    return PLAIN | given, np.array(rows)
 
 
 def test_the_description_is_valid(si_path):
@@ -56,24 +43,10 @@ def test_the_first_click_moves(si_path):
     assert result["charge"].max() > 0 and result["edge_displacement"].max() > 0
 
 
-@pytest.mark.parametrize("name", ["A_si_dc_step", "D_kv_step", "K_force_step_stack", "L_permittivity_step"])
-def test_scenes_of_the_reference(si_path, name):
-    start, rows = scene(name)
-    start["lambda_max"] = 5.0  # beyond it the permittivity of one of them vanishes
-    with Actuator(si_path) as actuator:
-        actuator.start(start)
-        time = 0.0
-        for end, stretch in rows:
-            if end > time:
-                actuator.advance(end - time)
-                time = end
-            assert actuator.get("lambda") == pytest.approx(stretch, abs=1e-9), f"t = {end}"
-
-
 def test_both_units_give_one_trajectory(si_path, fmu_path):
     """The paper's silicone under 600 V, and the same in nondimensional quantities."""
     content = json.loads((REFERENCE / "A_si_dc_step.json").read_text())
-    start, _ = scene("A_si_dc_step")
+    start = device_scene("A_si_dc_step").start
     groups, scales = content["groups_nondimensional"], content["scales_SI"]
     same = {"gamma_s": "gamma", "tau_s": "tau", "E_s": "E", "phi": "phi", "c": "c"}
     nondimensional = {name: float(groups[key]) for name, key in same.items()}
@@ -88,7 +61,7 @@ def test_both_units_give_one_trajectory(si_path, fmu_path):
 
 
 def test_model_exchange(si_path):
-    start, _ = scene("D_kv_step")
+    start = device_scene("D_kv_step").start
     options = {"start_values": start, "stop_time": 2e-3, "output_interval": 1e-5, "output": ["lambda", "charge"]}
     by_host = fmpy.simulate_fmu(str(si_path), fmi_type="ModelExchange", relative_tolerance=1e-8, **options)
     own = fmpy.simulate_fmu(str(si_path), fmi_type="CoSimulation", **options)
@@ -99,7 +72,7 @@ def test_model_exchange(si_path):
 
 
 def test_a_saved_state_goes_on_bit_for_bit(si_path):
-    start, _ = scene("B_rc_step")
+    start = device_scene("B_rc_step").start
     with Actuator(si_path) as actuator:
         actuator.start(start)
         actuator.advance(1e-4)
