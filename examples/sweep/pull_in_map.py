@@ -72,7 +72,7 @@ def draw(table: pa.Table) -> Figure:
     axes.set(xlim=extent[:2], ylim=extent[2:])
     axes.grid(False)
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    bar = figure.colorbar(time_image, ax=axes, label="time until pull-in", pad=0.01)
+    bar = figure.colorbar(time_image, ax=axes, label=f"time until pull-in  {style.SYMBOLS['time']}", pad=0.01)
     bar.ax.yaxis.set_ticks([instant for instant in (20, 30, 50, 100, 200) if times.min() <= instant <= times.max()])
     bar.ax.yaxis.set_ticks((), minor=True)
     bar.ax.yaxis.set_major_formatter("{x:g}")

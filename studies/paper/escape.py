@@ -78,7 +78,7 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     for axes, ((left, right), (bottom, top)) in zip(panels, WINDOWS[1:]):
         corners = ((left, right, right, left, left), (bottom, bottom, top, top, bottom))
         axes.plot(*corners, color=style.COLOURS[1], linewidth=1.6)
-    bar = figure.colorbar(shown, ax=panels, label="instant of escape", location="right", aspect=45)
+    bar = figure.colorbar(shown, ax=panels, label=r"instant of escape  $\bar{t}$", location="right", aspect=45)
     ticks = [instant for instant in (20, 50, 100, 200, 500) if first <= instant <= last]
     bar.ax.yaxis.set_ticks(ticks, labels=[str(instant) for instant in ticks])
     bar.ax.yaxis.set_ticks((), minor=True)
@@ -97,7 +97,7 @@ def escape_map(workers: Workers, cells: int, pairs: int) -> Entry:
     axes.set_title("(d)  in window (b)", loc="left")
     axes.legend()
     figure.suptitle(
-        rf"Escape of the ideal actuator from rest under $\bar\phi_a \sin\bar\omega\bar t$, "
+        rf"Escape of the ideal actuator from rest under $\bar\phi_a\,\sin\,\bar\omega\bar t$, "
         rf"{style.SYMBOLS['time']} $\leq$ {SPAN:g} (pale: no escape)"
     )
     workers.actuator.start(SLOW_ESCAPE, tolerance=1e-12)
