@@ -1,6 +1,6 @@
 // Puts the live page together: node build.mjs CORE.wasm LICENCES.txt OUTPUT.html
 // NODE_MODULES is where npm has put what package.json names.
-import { readFile, writeFile } from "node:fs/promises";
+import { readFile, readdir, writeFile } from "node:fs/promises";
 import { createRequire } from "node:module";
 import { join } from "node:path";
 
@@ -11,6 +11,22 @@ if (!core || !licences || !output || !modules) {
 }
 const { build } = createRequire(join(modules, "here"))("esbuild");
 const web = (name) => join(import.meta.dirname, "web", name);
+
+/** The presets in SI units of the Python package, by name. */
+async function presets() {
+  const folder = join(import.meta.dirname, "..", "python", "dielectric_actuator", "presets");
+  const files = (await readdir(folder)).filter((name) => name.endsWith(".json")).sort();
+  const entries = await Promise.all(files.map(async (name) => [name.replace(".json", ""), JSON.parse(await readFile(join(folder, name), "utf8"))]));
+  return Object.fromEntries(entries.filter(([, preset]) => preset.model === "si"));
+}
+
+const presetsModule = {
+  name: "presets",
+  setup({ onResolve, onLoad }) {
+    onResolve({ filter: /^presets$/ }, () => ({ path: "presets", namespace: "presets" }));
+    onLoad({ filter: /.*/, namespace: "presets" }, async () => ({ contents: JSON.stringify(await presets()), loader: "json" }));
+  },
+};
 
 /** Everything below an entry in one text. */
 async function bundled(entry, options) {
@@ -33,6 +49,7 @@ const script = await bundled(web("main.js"), {
   target: "es2022",
   alias: { "core.wasm": core },
   loader: { ".wasm": "binary" },
+  plugins: [presetsModule],
 });
 const style = await bundled(web("style.css"), {});
 const plotting = await readFile(join(modules, "uplot", "LICENSE"), "utf8");

@@ -194,7 +194,6 @@ fn pack_one(
     }
     let path = folder.join(format!("{}.fmu", fmu.identifier));
     archive::write(path.as_std_path(), &entries)?;
-    presets::write(&presets, folder.join("presets").as_std_path())?;
     let size = fs::metadata(&path).map_or(0, |metadata| metadata.len());
     println!("{path}: {}, {} files", kibibytes(size), entries.len());
     print!("{report}");
@@ -238,7 +237,12 @@ impl Library<'_> {
     ) -> Result<Vec<u8>> {
         fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
         let shared = folder.join(self.file(platform));
-        let besides = folder.join("zig");
+        // One place for every library of a platform, or cargo would compile the same crates anew for each.
+        let besides = project
+            .target_directory
+            .join("zig")
+            .join(platform.folder)
+            .into_std_path_buf();
         let archive =
             library::compile(project, self.identifier, toolchain, zig, platform, &besides)?;
         library::link(zig, archive.as_std_path(), &shared, platform, self.names)?;

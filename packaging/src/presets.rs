@@ -1,34 +1,57 @@
 //! Presets: start values as parameter values of SSP (`.ssv`), inside and beside the FMU.
 
+use std::env;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use cargo_metadata::Metadata;
 
 use crate::archive::Entries;
+use crate::zig::said;
 
-/// The presets of an FMU by the names of their files; none where it has no folder of them.
+/// What the Python package, which holds the presets, is asked for.
+const PROGRAM: &str =
+    "import sys; from dielectric_actuator import presets; presets.save_all(sys.argv[1])";
+
+/// Lets the Python package write the presets of every FMU beside the FMUs, and returns those of one by the
+/// names of their files.
 ///
 /// # Errors
-/// If the folder cannot be read.
+/// If the Python of the project is not known or cannot run the package, or there is no preset.
 pub fn read(project: &Metadata, identifier: &str) -> Result<Entries> {
-    let folder = project
-        .workspace_root
-        .join(format!("fmus/{identifier}/presets"));
-    let mut presets = Entries::new();
-    if !folder.is_dir() {
-        return Ok(presets);
+    let python = env::var_os("PYTHON_WITH_PYGMENTS").context(
+        "the environment has no PYTHON_WITH_PYGMENTS; run `make`, or eval \"$(make -s env)\" first",
+    )?;
+    let beside = project.workspace_root.join("target/fmu/presets");
+    let folder = beside.join(identifier);
+    if folder.exists() {
+        // of presets that are gone
+        fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {folder}"))?;
     }
-    let mut read = || -> Result<()> {
-        for entry in fs::read_dir(&folder)? {
+    let written = Command::new(&python)
+        .env("PYTHONPATH", project.workspace_root.join("python"))
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .args(["-c", PROGRAM, beside.as_str()])
+        .output()
+        .with_context(|| format!("cannot start {}", python.display()))?;
+    ensure!(
+        written.status.success(),
+        "the presets could not be written:\n{}",
+        said(&written)
+    );
+    let mut presets = Entries::new();
+    let mut read = |folder: &Path| -> Result<()> {
+        for entry in fs::read_dir(folder)? {
             let entry = entry?;
             let name = entry.file_name().to_string_lossy().into_owned();
             presets.insert(name, fs::read(entry.path())?);
         }
         Ok(())
     };
-    read().with_context(|| format!("cannot read {folder}"))?;
+    read(folder.as_std_path()).with_context(|| format!("cannot read {folder}"))?;
+    ensure!(!presets.is_empty(), "no preset in {folder}");
     Ok(presets)
 }
 
@@ -38,20 +61,4 @@ pub fn inside(presets: &Entries) -> Entries {
         .iter()
         .map(|(name, bytes)| (format!("resources/presets/{name}"), bytes.clone()))
         .collect()
-}
-
-/// Writes the presets to a folder beside the FMU.
-///
-/// # Errors
-/// If the folder cannot be written to.
-pub fn write(presets: &Entries, folder: &Path) -> Result<()> {
-    if presets.is_empty() {
-        return Ok(());
-    }
-    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
-    for (name, bytes) in presets {
-        let path = folder.join(name);
-        fs::write(&path, bytes).with_context(|| format!("cannot write {}", path.display()))?;
-    }
-    Ok(())
 }

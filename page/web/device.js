@@ -42,20 +42,20 @@ export function naturalFrequency(device) {
   return Math.sqrt(6 / (c + 2)) / (2 * Math.PI * scales(device).time);
 }
 
-/** What can be set: in `unit`, of which one is `factor` SI units. Ranges may follow the device. */
+/** What can be set: in `unit`, of which one is `factor` SI units; `variable` is its name in the SI FMU. Ranges may follow the device. */
 export const QUANTITIES = [
-  { key: "voltage", group: "Load", label: "Voltage", unit: "V", factor: 1, min: 0, max: (d) => 1.5 * scales(d).voltage },
+  { key: "voltage", variable: "voltage", group: "Load", label: "Voltage", unit: "V", factor: 1, min: 0, max: (d) => 1.5 * scales(d).voltage },
   { key: "prestress", group: "Load", label: "Prestress (force on an edge over its area)", short: "Prestress", unit: "kPa", factor: 1e3, min: 0, max: (d) => d.modulus },
-  { key: "driveVoltage", group: "Load", label: "Amplitude of the alternating voltage", short: "Alternating voltage", unit: "V", factor: 1, min: 0, max: (d) => scales(d).voltage },
-  { key: "driveFrequency", group: "Load", label: "Frequency of the alternating voltage", short: "Its frequency", unit: "kHz", factor: 1e3, min: 0, max: (d) => 3 * naturalFrequency(d) },
-  { key: "thickness", group: "Size", label: "Thickness", unit: "µm", factor: 1e-6, min: 0.1e-6, max: 2e-3, logarithmic: true },
-  { key: "side", group: "Size", label: "Side", unit: "mm", factor: 1e-3, min: 1e-6, max: 0.1, logarithmic: true },
-  { key: "surfaceEnergy", group: "Surface", label: "Surface energy", unit: "mN/m", factor: 1e-3, min: 0, max: 0.2 },
-  { key: "surfaceTension", group: "Surface", label: "Surface tension", unit: "mN/m", factor: 1e-3, min: 0, max: 0.2 },
-  { key: "surfaceElasticity", group: "Surface", label: "Surface elasticity", unit: "mN/m", factor: 1e-3, min: 0, max: 1 },
-  { key: "modulus", group: "Material", label: "Shear modulus", unit: "kPa", factor: 1e3, min: 5e3, max: 5e6, logarithmic: true },
-  { key: "density", group: "Material", label: "Density", unit: "kg/m³", factor: 1, min: 500, max: 3000 },
-  { key: "relativePermittivity", group: "Material", label: "Relative permittivity", unit: "", factor: 1, min: 1, max: 20 },
+  { key: "driveVoltage", variable: "V_ac", group: "Load", label: "Amplitude of the alternating voltage", short: "Alternating voltage", unit: "V", factor: 1, min: 0, max: (d) => scales(d).voltage },
+  { key: "driveFrequency", variable: "f_ac", group: "Load", label: "Frequency of the alternating voltage", short: "Its frequency", unit: "kHz", factor: 1e3, min: 0, max: (d) => 3 * naturalFrequency(d) },
+  { key: "thickness", variable: "H", group: "Size", label: "Thickness", unit: "µm", factor: 1e-6, min: 0.1e-6, max: 2e-3, logarithmic: true },
+  { key: "side", variable: "L", group: "Size", label: "Side", unit: "mm", factor: 1e-3, min: 1e-6, max: 0.1, logarithmic: true },
+  { key: "surfaceEnergy", variable: "gamma_s", group: "Surface", label: "Surface energy", unit: "mN/m", factor: 1e-3, min: 0, max: 0.2 },
+  { key: "surfaceTension", variable: "tau_s", group: "Surface", label: "Surface tension", unit: "mN/m", factor: 1e-3, min: 0, max: 0.2 },
+  { key: "surfaceElasticity", variable: "E_s", group: "Surface", label: "Surface elasticity", unit: "mN/m", factor: 1e-3, min: 0, max: 1 },
+  { key: "modulus", variable: "mu", group: "Material", label: "Shear modulus", unit: "kPa", factor: 1e3, min: 5e3, max: 5e6, logarithmic: true },
+  { key: "density", variable: "rho", group: "Material", label: "Density", unit: "kg/m³", factor: 1, min: 500, max: 3000 },
+  { key: "relativePermittivity", variable: "eps_r", group: "Material", label: "Relative permittivity", unit: "", factor: 1, min: 1, max: 20 },
 ];
 
 /** The quantities that the motion goes on under; a change of any other starts it anew. */

@@ -6,18 +6,17 @@ import { LOAD, format, fromAddress, naturalFrequency, toAddress, withPrefix } fr
 import { draw } from "./membrane.js";
 import { Motion } from "./motion.js";
 import { plot } from "./plots.js";
-import presets from "./presets.json";
+import { BASE, GROUPS, PRESETS } from "./presets.js";
 
 /** Periods of the free motion a second at the middle of the slider. */
 const PERIODS_A_SECOND = 0.4;
 
 const part = (name) => document.getElementById(name);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
-const scenes = Object.entries(presets).filter(([group]) => group !== "base");
-const deviceOf = (preset) => ({ ...presets.base, ...preset.device });
+const presetNamed = (wanted) => PRESETS.find(({ name }) => name === wanted);
 
 const actuator = await loadActuator();
-let device = deviceOf(presets.Scenes.swing);
+let { device } = presetNamed("silicone_swing");
 let motion;
 let playing = !still.matches;
 let last;
@@ -25,16 +24,15 @@ let last;
 // ---- What is set ----
 
 const select = part("preset");
-for (const [group, entries] of scenes) {
+for (const [group, entries] of GROUPS) {
   const section = Object.assign(document.createElement("optgroup"), { label: group });
-  for (const [name, { title }] of Object.entries(entries)) section.append(new Option(title, name));
+  for (const { name, title } of entries) section.append(new Option(title, name));
   select.append(section);
 }
 select.append(new Option("Your own", "own"));
-const presetNamed = (name) => scenes.map(([, entries]) => entries[name]).find(Boolean);
 select.addEventListener("change", () => {
   const preset = presetNamed(select.value);
-  if (preset) take(deviceOf(preset), true);
+  if (preset) take(preset.device, true);
 });
 
 const showControls = buildControls(part("quantities"), (key, value) => {
@@ -56,9 +54,9 @@ function take(wanted, anew) {
   }
   showControls(device);
   const address = toAddress(device);
-  const found = scenes.flatMap(([, entries]) => Object.entries(entries)).find(([, preset]) => toAddress(deviceOf(preset)) === address);
-  select.value = found ? found[0] : "own";
-  part("note").textContent = found ? found[1].note : "";
+  const found = PRESETS.find((preset) => toAddress(preset.device) === address);
+  select.value = found?.name ?? "own";
+  part("note").textContent = found?.note ?? "";
   history.replaceState(null, "", `#${address}`);
   show();
 }
@@ -243,16 +241,15 @@ function showPlots(now) {
   const path = orbit(actuator, now.stretch, hamiltonian, window);
   const barrier = motion.barrier();
   const edge = barrier < window[1] ? orbit(actuator, Math.min(1.0001, barrier), actuator.potential(barrier) - 1e-9, [window[0], barrier]) : [];
-  const rates = [...path, ...edge].map((point) => Math.abs(point.rate)).filter(Number.isFinite);
-  const fastest = 1.1 * Math.max(...rates, 1e-6);
-  const column = (points, key) => points.map((point) => point[key]);
   const recent = motion.past.slice(-400);
-  plots.phase.show({ x: window, y: [-fastest, fastest] }, [
-    { x: column(edge, "stretch"), y: column(edge, "rate") },
-    { x: column(recent, "stretch"), y: column(recent, "rate") },
-    { x: column(path, "stretch"), y: column(path, "rate") },
-    { x: [now.stretch], y: [now.rate] },
-  ]);
+  // The unit of the rate is that of the time in the plot above it.
+  const perTime = 1 / (time * perUnit);
+  const seen = [...path, ...edge, ...recent].filter(({ stretch }) => stretch >= window[0] && stretch <= window[1]);
+  const rates = seen.map((point) => Math.abs(point.rate) * perTime).filter(Number.isFinite);
+  const fastest = 1.1 * Math.max(...rates, 1e-6 * perTime);
+  const curve = (points) => ({ x: points.map((point) => point.stretch), y: points.map((point) => point.rate * perTime) });
+  plots.phase.label(1, `rate, 1/${unit}`);
+  plots.phase.show({ x: window, y: [-fastest, fastest] }, [curve(edge), curve(recent), curve(path), curve([now])]);
 
   const expanding = stretches.filter((stretch) => stretch >= 1);
   const turning = expanding.map((stretch) => voltage * Math.sqrt(actuator.stagnation(stretch)));
@@ -277,7 +274,7 @@ function showPlots(now) {
 // ---- Begin ----
 
 function fromHash() {
-  const { device: wanted, faults } = fromAddress(location.hash, presets.base);
+  const { device: wanted, faults } = fromAddress(location.hash, BASE);
   if (location.hash.length > 1) take(wanted, true);
   else take(device, true);
   if (faults.length > 0) say(`The address could not be followed in all: ${faults.join("; ")}.`);

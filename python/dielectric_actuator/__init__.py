@@ -1,14 +1,15 @@
 """The motion of a dielectric elastomer actuator with surface effects: run, sweep, plot, fit.
 
-* `Actuator`: one instance of the packed FMU, by name; `frame` makes a pandas table of a response;
-* `presets`: scenes that show a motion;
+* `Actuator`: one instance of a packed FMU, nondimensional or in SI units; `frame` makes a pandas table of a response;
+* `presets`: scenes that show a motion, and materials;
 * `ensemble`, `grid`: many scenes at once, in SIMD lanes on every core;
 * `sensitivities`: a motion with its exact derivatives by the parameters;
-* `identification.fit`: parameters from measured data, which `measured` reads (extra ``fit``);
+* `identification.fit`: parameters from measured data, which `measured` reads (extra ``fit``); `device` leads from SI
+  units to the nondimensional model;
 * `plot`: history, phase portrait, pull-in margin (extra ``plot``).
 
-The model is that of A. P. Singh, G. Shmuel and A. K. Sharma, *Nonlinear dynamics of miniaturized dielectric
-elastomer actuators with surface effects*.
+The nondimensional model is that of A. P. Singh, G. Shmuel and A. K. Sharma, *Nonlinear dynamics of miniaturized
+dielectric elastomer actuators with surface effects*.
 """
 
 from importlib.metadata import PackageNotFoundError, version

@@ -16,7 +16,8 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
 from fmpy.model_description import ScalarVariable
 
-from .fmu import LogMessage, Variables, instantiate, packed_fmu
+from . import equilibrium
+from .fmu import LogMessage, Variables, instantiate, located
 
 Scene = Mapping[str, float | Callable[[float], float]]
 """Start values of one run by variable name; an input may be a function of time."""
@@ -32,24 +33,29 @@ class SavedState(NamedTuple):
 class Actuator:
     """One instance of a packed actuator; a context manager, so that library and folder are given back.
 
-    Without a path it is the nondimensional actuator of this package: voltage φ̄ = φ √(ε/µ)/H, prestress
-    S̄ = P/(µHL), time t̄ = t √(12µ/(ρH²)) (Eq. 15 of the paper). Any other FMI 2.0 co-simulation FMU serves
-    as well, in the units that it declares (`variables`). ``messages`` holds what the FMU logged since the last
-    `start`. A call that the FMU refuses raises ``fmpy.fmi1.FMICallException`` with the FMU's reason as a note; a
-    name that it does not have, `UnknownName`.
+    `fmu` names one of the package, or is the path of any other FMI 2.0 co-simulation FMU, in the units that it
+    declares (`units`):
+
+    * "nondimensional" is the actuator of the paper: voltage φ̄ = φ √(ε/µ)/H, prestress S̄ = P/(µHL), time
+      t̄ = t √(12µ/(ρH²)) (Eq. 15);
+    * "si" is a real one in volts, metres, seconds and newtons, with losses, stiffening and breakdown.
+
+    ``messages`` holds what the FMU logged since the last `start`. A call that the FMU refuses raises
+    ``fmpy.fmi1.FMICallException`` with the FMU's reason as a note; a name that it does not have, `UnknownName`.
 
         with Actuator() as actuator:
             response = actuator.run({"phi": 0.6}, stop_time=80.0, communication_step=0.1)
             print(response["time"], response["lambda"])
 
+        with Actuator("si") as film:
+            response = film.run({"voltage": 650.0}, stop_time=30e-6, communication_step=0.1e-6)
+
     ``fmpy.simulate_fmu`` unpacks, loads and frees the FMU at every call; an `Actuator` does so once, and is reset
     between runs.
     """
 
-    def __init__(self, path: str | Path | None = None):
-        path = packed_fmu() if path is None else Path(path)
-        if not path.is_file():
-            raise FileNotFoundError(f"no FMU at {path}; in a checkout, make fmu builds and packs it")
+    def __init__(self, fmu: str | Path = "nondimensional"):
+        path = located(fmu)
         self.messages: list[LogMessage] = []
         self.time = 0.0
         self.description = fmpy.read_model_description(str(path))
@@ -58,6 +64,12 @@ class Actuator:
         fmpy.extract(str(path), unzipdir=self._folder.name)
         self._fmu = instantiate(self._folder.name, self.description, self.messages)
         self._fresh = True
+
+    def __repr__(self) -> str:
+        name, clock = self.description.modelName, self.units["time"]
+        if self._fmu is None:
+            return f"<Actuator {name}, closed>"
+        return f"<Actuator {name} at time {self.time:g}{f' {clock}' if clock else ''}>"
 
     def __enter__(self) -> Actuator:
         return self
@@ -79,6 +91,18 @@ class Actuator:
         """What the model description says of each variable: ``unit``, ``description``, ``start``, ``min``, ``max``."""
         return self._variables.by_name
 
+    @property
+    def units(self) -> dict[str, str]:
+        """The unit of each variable that has one, and of ``time``; "" for a nondimensional one."""
+        found = {name: variable.unit or "" for name, variable in self.variables.items()}
+        found = {name: "" if unit == "1" else unit for name, unit in found.items()}
+        # FMI counts time in seconds; a model without a dimension has none in its time
+        return {**found, "time": "s" if any(unit not in ("", "rad") for unit in found.values()) else ""}
+
+    def describe(self, *names: str) -> str:
+        """A table of all variables, or of the named ones: unit, start value, limits, meaning."""
+        return self._variables.table(names)
+
     def start(
         self,
         scene: Scene,
@@ -96,7 +120,7 @@ class Actuator:
         """
         values = {name: value(start_time) if callable(value) else value for name, value in scene.items()}
         if at_equilibrium:
-            values |= {"lambda_start": self.equilibrium(values, start_time=start_time), "lambda_dot_start": 0.0}
+            values |= equilibrium.at_rest(self, values, self.equilibrium(values, start_time=start_time))
         if not self._fresh:
             self._fmu.reset()
         self._fresh = False
@@ -112,40 +136,11 @@ class Actuator:
     def equilibrium(self, values: Mapping[str, float], *, start_time: float = 0.0) -> float:
         """The smallest stretch at which the actuator rests in equilibrium under `values`, to the last bit.
 
-        It is stable, and it is where a voltage that is raised slowly from 0 leads. Raises ValueError where there
-        is none between `lambda_min` and `lambda_max`, that is beyond the static pull-in.
+        It is stable, and it is where a voltage that is raised slowly from 0 leads; the branches of a lossy material
+        are relaxed. Raises ValueError where there is none between `lambda_min` and `lambda_max`, that is beyond the
+        static pull-in, and where a source gives a current, or loses voltage to a leak behind a resistance.
         """
-
-        def start(stretch: float) -> None:
-            self.start({**values, "lambda_start": stretch, "lambda_dot_start": 0.0}, start_time=start_time)
-
-        def acceleration(stretch: float) -> float:
-            start(stretch)
-            return float(self.get("lambda_ddot"))
-
-        def slope(stretch: float) -> float:
-            start(stretch)
-            return self.directional_derivatives(["lambda_ddot"], "lambda")[0]
-
-        start(1.0)
-        lowest, highest = self.get("lambda_min", "lambda_max")
-        below = math.nextafter(lowest, highest)
-        falling = slope(below) <= 0
-        for above in map(float, np.geomspace(lowest, highest, 200)[1:-1]):
-            if acceleration(above) > 0:
-                was_falling, falling = falling, slope(above) <= 0
-                if was_falling and not falling:
-                    # close to pull-in, two equilibria may lie between: the acceleration is least there
-                    least = _bisected(lambda stretch: slope(stretch) > 0, below, above)
-                    if acceleration(least) <= 0:
-                        above = least
-            if acceleration(above) <= 0:
-                return _bisected(lambda stretch: acceleration(stretch) <= 0, below, above)
-            below = above
-        raise ValueError(
-            f"there is no equilibrium between lambda_min = {lowest:g} and lambda_max = {highest:g}: the static pull-in "
-            f"voltage is {self.get('phi_pull_in_static'):.6g}"
-        )
+        return equilibrium.find(self, values, start_time)
 
     def set(self, values: Mapping[str, float]) -> None:
         """Set inputs or parameters by name; each FMI type in one call, refused as a whole."""
@@ -245,6 +240,7 @@ class Actuator:
         tolerance: float | None = None,
         start_time: float = 0.0,
         at_equilibrium: bool = False,
+        progress: Callable[[int, int], None] | None = None,
     ) -> np.ndarray:
         """Run one scene and return its response, one row per communication point.
 
@@ -252,9 +248,13 @@ class Actuator:
         ``fmpy.simulate_fmu`` returns it; `frame` makes a pandas table of it. If `communication_step` does not
         divide the span, the last step is shorter and ends at `stop_time`. An input given as a function of time
         is evaluated at the start of each step and held over it. A run that the FMU ends has its last row at that
-        instant.
+        instant. `progress` is called now and then with the number of steps done and that of all.
         """
         outputs = list(outputs)
+        if not (math.isfinite(stop_time) and stop_time >= start_time):
+            raise ValueError(f"stop_time is {stop_time:g}; it must be a number from start_time = {start_time:g} on")
+        if not (math.isfinite(communication_step) and communication_step > 0):
+            raise ValueError(f"communication_step is {communication_step:g}; it must be a number above 0")
         # 1e-9 of a step is rounding of the quotient, not a last step worth taking
         steps = max(0, math.ceil((stop_time - start_time) / communication_step - 1e-9))
         times = start_time + communication_step * np.arange(steps + 1)
@@ -281,6 +281,8 @@ class Actuator:
                 self.set({name: value(self.time) for name, value in varying.items()})
             completed = self.advance(communication_step if step < steps else stop_time - self.time)
             record(step)
+            if progress and step % 1000 == 0 and step < steps:
+                progress(step, steps)
             if not completed:
                 response["time"][step] = self.time
                 return response[: step + 1]
@@ -297,13 +299,6 @@ class Actuator:
         except FMICallException as refusal:
             self._explain(refusal)
             raise
-
-
-def _bisected(beyond: Callable[[float], bool], below: float, above: float) -> float:
-    """The smallest number, to the last bit, from which on `beyond` is true; it is at `above`, not at `below`."""
-    while below < (middle := (below + above) / 2) < above:
-        below, above = (below, middle) if beyond(middle) else (middle, above)
-    return above
 
 
 def frame(response: np.ndarray) -> Any:

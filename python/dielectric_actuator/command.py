@@ -1,38 +1,58 @@
-"""The command ``dielectric-actuator``: run, presets, thresholds, sweep, fit."""
+"""The command ``dielectric-actuator``: run, presets, variables, thresholds, sweep, fit."""
 
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from . import __version__, presets
+from . import __version__, device, native, presets
 from .actuator import Actuator
-from .fmu import UnknownName
+from .fmu import UnknownName, located
 from .kept import KeptTable
+from .native import grid, known_names, scene_names
 
 THRESHOLDS = {
     "phi_pull_in": "dynamic pull-in voltage, switched on at rest",
     "lambda3_pull_in": "thickness stretch there",
     "phi_pull_in_static": "static pull-in voltage, raised slowly",
     "lambda3_pull_in_static": "thickness stretch there",
+    "V_pull_in_dynamic": "pull-in voltage, switched on at rest, without losses",
+    "V_pull_in_from_rest": "the same with damping and series resistance",
+    "V_pull_in_static": "static pull-in voltage, raised slowly",
+    "lambda_snap": "stretch to which it snaps there",
 }
+"""What is printed of those that the actuator has."""
 EXTRAS = {"matplotlib": "plot", "scipy": "fit"}
 """The extra of the package that brings a module."""
 VARIABLES = "Variables of the FMU are options too, by their names: --phi 0.6 --gamma_s 0.05."
+FIRST_PRESET = {"nondimensional": "step", "si": "silicone_swing"}
+UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "V": 1.0, "kV": 1e3, "m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "1": 1.0}
+"""What measured data may be in, each as so many SI units."""
+
+Values = dict[str, float]
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Run the command; 0 on success, 2 if it was not understood, 1 if it could not be done, 130 if interrupted."""
-    arguments, rest = _parser().parse_known_args(words)
+    words = sys.argv[1:] if words is None else list(words)
     try:
-        arguments.run(arguments, _variables(rest))
+        if words and not words[0].startswith("-") and words[0] not in VERBS:
+            raise UnknownName("command", words[0], VERBS)
+        arguments, rest = _parser().parse_known_args(words)
+        arguments.run(arguments, _variables(rest, arguments))
+    except BrokenPipeError:
+        # the reader has seen enough; what is still buffered goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except ImportError as missing:
         extra = EXTRAS.get(str(missing.name).partition(".")[0])
         advice = f"; it comes with pip install 'dielectric-actuator[{extra}]'" if extra else ""
@@ -55,13 +75,20 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=__version__)
     verbs = parser.add_subparsers(required=True, metavar="COMMAND")
 
-    def verb(name: str, run: Callable[[Any, dict[str, float]], None], about: str) -> argparse.ArgumentParser:
-        added = verbs.add_parser(name, help=about, description=f"{about}. {VARIABLES}", allow_abbrev=False)
-        added.set_defaults(run=run)
+    def verb(name: str) -> argparse.ArgumentParser:
+        run, about, variables = VERBS[name]
+        added = verbs.add_parser(
+            name, help=about, description=f"{about}. {VARIABLES if variables else ''}", allow_abbrev=False
+        )
+        added.set_defaults(run=run, variables=variables, si=False, fmu=None, preset=None, parser=added)
         return added
 
-    run = verb("run", _run, "Run one scene")
-    run.add_argument("--preset", default="step", help="the scene to begin with (default: %(default)s)")
+    def in_si(of: argparse.ArgumentParser) -> None:
+        of.add_argument("--si", action="store_true", help="the actuator in volts, metres and seconds")
+
+    run = verb("run")
+    in_si(run)
+    run.add_argument("--preset", help="the scene or material to begin with (default: step, with --si silicone_swing)")
     run.add_argument("--stop-time", type=float, help="default: the preset's")
     run.add_argument("--step", type=float, help="communication step (default: the preset's)")
     run.add_argument("--at-equilibrium", action="store_true", help="start at rest where the inputs hold the actuator")
@@ -69,13 +96,23 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--plot", type=Path, metavar="PNG", help="write history, pull-in margin and phase portrait")
     run.add_argument("--csv", type=Path, metavar="CSV", help="write the response")
 
-    show = verb("presets", _presets, "List the presets, or show one")
+    show = verb("presets")
     show.add_argument("name", nargs="?")
-    show.add_argument("--ssv", type=Path, metavar="SSV", help="write its start values for hosts that read such files")
+    show.add_argument(
+        "--ssv",
+        type=Path,
+        help="write its start values for hosts that read such files; without a name all, in a folder",
+    )
 
-    verb("thresholds", _thresholds, "Pull-in thresholds and equilibrium")
+    listed = verb("variables")
+    in_si(listed)
+    listed.add_argument("name", nargs="*", help="only these")
 
-    sweep = verb("sweep", _sweep, "Follow every combination of values, on all cores")
+    thresholds = verb("thresholds")
+    in_si(thresholds)
+    thresholds.add_argument("--preset", help="the scene or material to begin with")
+
+    sweep = verb("sweep")
     sweep.add_argument(
         "--vary",
         action="append",
@@ -89,98 +126,162 @@ def _parser() -> argparse.ArgumentParser:
     sweep.add_argument("--workers", type=int, default=0, help="threads (default: one a core)")
     sweep.add_argument("--output", type=Path, default=Path("sweep.csv"), help="(default: %(default)s)")
 
-    fit = verb("fit", _fit, "Find parameters from measured voltage and stretch")
+    fit = verb("fit")
+    in_si(fit)
     fit.add_argument("data", type=Path, help="a CSV file with a column each for time, voltage and stretch")
     fit.add_argument("--free", required=True, help="parameters to find, with commas between them")
     fit.add_argument("--time", default="time", help="name of that column (default: %(default)s)")
     fit.add_argument("--voltage", default="voltage", help="name of that column (default: %(default)s)")
     fit.add_argument("--stretch", default="stretch", help="name of that column (default: %(default)s)")
+    fit.add_argument(
+        "--observed", default="lambda", help="with --si: lambda, thickness, edge_distance or edge_displacement"
+    )
+    fit.add_argument("--units", default="s,V,m", help="with --si, of the columns: s, ms, us; V, kV; m, mm, um, nm")
     fit.add_argument("--hold", action="store_true", help="the voltage keeps its value until the next row")
-    fit.add_argument("--preset", type=Path, metavar="JSON", help="write what was found as a preset")
+    fit.add_argument("--preset", type=Path, metavar="JSON", dest="write", help="write what was found as a preset")
     return parser
 
 
-def _variables(words: Sequence[str]) -> dict[str, float]:
+def _model(arguments: Any) -> str:
+    """The actuator that is meant: that of the preset, or of --si."""
+    chosen = "si" if arguments.si else "nondimensional"
+    if arguments.preset is None:
+        return chosen
+    model = presets.load(arguments.preset).model
+    if arguments.si and model != "si":
+        raise ValueError(f"the preset {arguments.preset} is nondimensional; leave --si out")
+    return model
+
+
+def _variables(words: Sequence[str], arguments: Any) -> Values:
     """Values of variables from what the parser has left: ``--NAME VALUE`` or ``--NAME=VALUE``."""
-    values: dict[str, float] = {}
+    if not words:
+        return {}
+    known = arguments.variables(arguments) if arguments.variables else ()
+    options = [option.removeprefix("--") for option in arguments.parser._option_string_actions if len(option) > 2]
+    values: Values = {}
     remaining = iter(words)
     for word in remaining:
         name, equals, text = word.partition("=")
         if not word.startswith("--"):
             raise ValueError(f"{word!r} is no option; variables are given as --NAME VALUE")
+        name = name.removeprefix("--")
+        if name not in known:
+            raise UnknownName("option or variable" if known else "option", name, [*options, *known])
         if not equals:
             text = next(remaining, "")
-        name = name.removeprefix("--")
         try:
             values[name] = float(text)
         except ValueError:
-            # a name that there is not is told first
-            with Actuator() as actuator:
-                if name not in actuator.variables:
-                    raise UnknownName("option or variable", name, actuator.variables) from None
             raise ValueError(f"{name} is {text!r}; it must be a number") from None
     return values
 
 
-def _run(arguments: Any, values: dict[str, float]) -> None:
-    preset = presets.load(arguments.preset)
+def _settable(arguments: Any) -> list[str]:
+    """Inputs and parameters of the actuator that is meant."""
+    path = located(arguments.fmu or _model(arguments))
+    described = fmpy.read_model_description(str(path)).modelVariables
+    return [variable.name for variable in described if variable.causality in ("input", "parameter")]
+
+
+def _run(arguments: Any, values: Values) -> None:
+    model = _model(arguments)
+    preset = presets.load(arguments.preset or FIRST_PRESET[model])
+    scene = {**preset.start_values, **values}
     from .plot import OVERVIEW, overview
 
-    with Actuator(arguments.fmu) as actuator:
+    with Actuator(arguments.fmu or model) as actuator:
         response = actuator.run(
-            {**preset.start_values, **values},
-            stop_time=arguments.stop_time or preset.stop_time,
-            communication_step=arguments.step or preset.communication_step,
+            scene,
+            stop_time=preset.stop_time if arguments.stop_time is None else arguments.stop_time,
+            communication_step=preset.communication_step if arguments.step is None else arguments.step,
             outputs=(*OVERVIEW, "lambda3"),
             at_equilibrium=arguments.at_equilibrium,
+            progress=_each_second(
+                lambda done, count, seconds: f"{done} of {count} steps, {(count - done) * seconds / done:.0f} s left"
+            ),
         )
         pulled_in, when = actuator.get("pulled_in", "pull_in_time")
-    stretch = response["lambda"]
+        units = actuator.units
+    stretch, clock = response["lambda"], f" {units['time']}" if units["time"] else ""
     print(
-        f"stretch from {stretch.min():.6g} to {stretch.max():.6g}, {stretch[-1]:.6g} at time {response['time'][-1]:g}"
+        f"stretch from {stretch.min():.6g} to {stretch.max():.6g}, {stretch[-1]:.6g} at time "
+        f"{response['time'][-1]:g}{clock}"
     )
-    print(f"pulled in at time {when:.6g}" if pulled_in else "not pulled in")
+    print(f"pulled in at time {when:.6g}{clock}" if pulled_in else "not pulled in")
     if arguments.csv:
         _write_csv(arguments.csv, {name: response[name] for name in response.dtype.names or ()})
         print(arguments.csv)
     if arguments.plot:
-        shown = ", ".join(f"{name} = {value:g}" for name, value in {**preset.start_values, **values}.items())
-        overview(response, shown).savefig(arguments.plot)
+        shown = [f"{name} = {value:g} {units.get(name, '')}".rstrip() for name, value in scene.items()]
+        title = preset.title if len(shown) > 6 else ", ".join(shown)
+        overview(response, title, units=units).savefig(arguments.plot)
         print(arguments.plot)
 
 
-def _presets(arguments: Any, values: dict[str, float]) -> None:
-    _refuse(values)
+def _each_second(said: Callable[[int, Any, float], str]) -> Callable[[int, Any], None]:
+    """Progress on standard error, a line each second: `said` of two numbers and the seconds since the begin."""
+    begin = shown = time.perf_counter()
+
+    def report(done: int, other: Any) -> None:
+        nonlocal shown
+        now = time.perf_counter()
+        if now - shown >= 1:
+            shown = now
+            print(said(done, other, now - begin), file=sys.stderr)
+
+    return report
+
+
+def _presets(arguments: Any, _values: Values) -> None:
     if arguments.name is None:
-        for name in presets.names():
-            print(f"{name:<14} {presets.load(name).title}")
+        for model, heading in (("nondimensional", "nondimensional"), ("si", "in volts, metres and seconds")):
+            print(f"{heading}:")
+            for name in presets.names(model):
+                print(f"  {name:<22} {presets.load(name).title}")
+        if arguments.ssv:
+            print(*presets.save_all(arguments.ssv), sep="\n")
         return
     preset = presets.load(arguments.name)
-    print(f"{preset.title}\n{preset.description}")
+    print(f"{preset.title}\n{preset.about()}")
+    with Actuator(preset.model) as actuator:
+        units = actuator.units
     for name, value in preset.start_values.items():
-        print(f"  {name} = {value:g}")
-    print(f"  until {preset.stop_time:g} in steps of {preset.communication_step:g}")
+        print(f"  {name} = {value:g} {units[name]}".rstrip())
+    print(f"  until {preset.stop_time:g} in steps of {preset.communication_step:g} {units['time']}".rstrip())
     if arguments.ssv:
         print(preset.save_ssv(arguments.ssv))
 
 
-def _thresholds(_arguments: Any, values: dict[str, float]) -> None:
-    with Actuator() as actuator:
+def _describe(arguments: Any, _values: Values) -> None:
+    with Actuator(_model(arguments)) as actuator:
+        print(actuator.describe(*arguments.name))
+
+
+def _thresholds(arguments: Any, values: Values) -> None:
+    with Actuator(_model(arguments)) as actuator:
+        if arguments.preset:
+            values = {**presets.load(arguments.preset).start_values, **values}
         actuator.start(values)
         for name, meaning in THRESHOLDS.items():
-            value = actuator.get(name)
-            exists = 0 < value < float("inf")
-            print(f"{name:<24}{value if exists else 'none':>20}  {meaning}")
+            if name in actuator.variables:
+                value = actuator.get(name)
+                shown = f"{value} {actuator.units[name]}".rstrip() if 0 < value < float("inf") else "none"
+                print(f"{name:<24}{shown:>22}  {meaning}")
         try:
             stretch: float | str = actuator.equilibrium(values)
         except ValueError:
             stretch = "none"
-        print(f"{'equilibrium stretch':<24}{stretch:>20}  where these inputs hold the actuator")
+        print(f"{'equilibrium stretch':<24}{stretch:>22}  where these inputs hold the actuator")
 
 
-def _sweep(arguments: Any, values: dict[str, float]) -> None:
-    from .native import ensemble, grid
-
+def _sweep(arguments: Any, values: Values) -> None:
+    varied = [name for name, _ in arguments.vary]
+    for name in varied:
+        if name not in scene_names():
+            raise UnknownName("variable", name, scene_names())
+        if varied.count(name) > 1 or name in values:
+            raise ValueError(f"{name} is given twice")
     columns = grid(**dict(arguments.vary))
     count = len(next(iter(columns.values())))
     scenes = {**columns, **{name: np.full(count, value) for name, value in values.items()}}
@@ -193,9 +294,13 @@ def _sweep(arguments: Any, values: dict[str, float]) -> None:
         while start < count:
             part_begin = time.perf_counter()
             chosen = {name: column[start : start + part] for name, column in scenes.items()}
-            found = ensemble(
-                chosen, stop_time=arguments.stop_time, tolerance=arguments.tolerance, workers=arguments.workers
-            )
+            try:
+                found = native.ensemble(
+                    chosen, stop_time=arguments.stop_time, tolerance=arguments.tolerance, workers=arguments.workers
+                )
+            except KeyboardInterrupt:
+                print(f"{start} of {count} are kept; the same command goes on from there", file=sys.stderr)
+                raise
             table.add({**chosen, **{name: found[name] for name in found.dtype.names or ()}})
             start = min(start + part, count)
             now = time.perf_counter()
@@ -206,22 +311,42 @@ def _sweep(arguments: Any, values: dict[str, float]) -> None:
         print(table.complete())
 
 
-def _fit(arguments: Any, values: dict[str, float]) -> None:
+def _fit(arguments: Any, values: Values) -> None:
     from . import measured
     from .identification import fit
 
     names = (arguments.time, arguments.voltage, arguments.stretch)
-    data = measured.read(arguments.data, names)
+    table = measured.read(arguments.data, names)
+    clock, columns = measured.check(
+        table[arguments.time], {name: table[name] for name in names[1:]}, clock=arguments.time
+    )
+    voltage, stretch = columns.values()
+    scales = _scales(arguments.units, arguments.observed) if arguments.si else (1.0, 1.0, 1.0)
     found = fit(
-        *(data[name] for name in names),
+        *(data * scale for data, scale in zip((clock, voltage, stretch), scales)),
         free=[name.strip() for name in arguments.free.split(",")],
         start=values,
+        model="si" if arguments.si else "nondimensional",
+        observed=arguments.observed,
         interpolation="hold" if arguments.hold else "linear",
+        progress=_each_second(lambda count, left, _: f"{count} motions followed, {left:.3g} left of the measured"),
     )
     print(found.table())
-    if arguments.preset:
-        voltage = float(np.median(data[arguments.voltage]))
-        print(found.preset(f"Fitted to {arguments.data.name}", voltage).save(arguments.preset))
+    if arguments.write:
+        middle = float(np.median(voltage)) * scales[1]
+        print(found.preset(f"Fitted to {arguments.data.name}", middle).save(arguments.write))
+
+
+def _scales(units: str, observed: str) -> tuple[float, float, float]:
+    """SI units in a unit of each column; a stretch has none."""
+    given = [unit.strip() for unit in units.split(",")]
+    if len(given) != 3:
+        raise ValueError(f"{units!r} names {len(given)} units; it must be those of time, voltage and length: us,V,um")
+    for unit in given:
+        if unit not in UNITS:
+            raise UnknownName("unit", unit, UNITS)
+    seconds, volts, metres = (UNITS[unit] for unit in given)
+    return seconds, volts, 1.0 if observed == "lambda" else metres
 
 
 def _axis(text: str) -> tuple[str, tuple[float, ...]]:
@@ -242,10 +367,16 @@ def _write_csv(path: Path, columns: dict[str, np.ndarray]) -> None:
         table.complete()
 
 
-def _refuse(values: dict[str, float]) -> None:
-    if values:
-        raise ValueError(f"variables mean nothing here: {', '.join(values)}")
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+VERBS: dict[str, tuple[Callable[[Any, Values], None], str, Callable[[Any], Sequence[str]] | None]] = {
+    "run": (_run, "Run one scene", _settable),
+    "presets": (_presets, "List the presets, or show one", None),
+    "variables": (_describe, "List the variables with their units, limits and meaning", None),
+    "thresholds": (_thresholds, "Pull-in thresholds and equilibrium", _settable),
+    "sweep": (_sweep, "Follow every combination of values, on all cores", lambda _: scene_names()),
+    "fit": (
+        _fit,
+        "Find parameters from measured voltage and stretch",
+        lambda arguments: device.NAMES if arguments.si else known_names(),
+    ),
+}
+"""Each command: what runs it, what it does, and the variables that are options of it."""

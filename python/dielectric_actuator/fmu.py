@@ -23,17 +23,34 @@ from fmpy.fmi2 import (
 )
 from fmpy.model_description import ModelDescription, ScalarVariable
 
-MODEL = "DielectricElastomerActuator"
-"""Model identifier of the nondimensional actuator."""
+MODELS = {"nondimensional": "DielectricElastomerActuator", "si": "DielectricElastomerActuatorSI"}
+"""The actuators of the package, each with the name of its FMU: that of the paper, and a real one in SI units."""
 
 _DATA = Path(__file__).resolve().parent / "data"
 _CHECKOUT = Path(__file__).resolve().parents[2] / "target" / "fmu"
 
 
-def packed_fmu(model: str = MODEL) -> Path:
-    """Path of the packed FMU of a model: that of the installed package, or in a checkout ``target/fmu``."""
-    inside = _DATA / f"{model}.fmu"
-    return inside if inside.is_file() else _CHECKOUT / f"{model}.fmu"
+def packed_fmu(model: str = "nondimensional") -> Path:
+    """Path of the packed FMU of one of `MODELS`: that of the installed package, or in a checkout ``target/fmu``.
+
+    Raises `UnknownName` for a model that there is not.
+    """
+    if model not in MODELS:
+        raise UnknownName("actuator", model, MODELS)
+    name = f"{MODELS[model]}.fmu"
+    return _DATA / name if (_DATA / name).is_file() else _CHECKOUT / name
+
+
+def located(fmu: str | Path) -> Path:
+    """The path of an FMU that is given as one, or by the name of one of `MODELS`.
+
+    Raises FileNotFoundError where there is none, `UnknownName` for a name that there is not.
+    """
+    named = isinstance(fmu, str) and not Path(fmu).suffix
+    path = packed_fmu(str(fmu)) if named else Path(fmu)
+    if not path.is_file():
+        raise FileNotFoundError(f"no FMU at {path}; in a checkout, make fmu builds and packs it")
+    return path
 
 
 class UnknownName(KeyError):
@@ -151,6 +168,19 @@ class Variables:
     def access(self, name: str) -> Access:
         """How a variable is read and written."""
         return _ACCESS[self[name].type]
+
+    def table(self, names: Iterable[str] = ()) -> str:
+        """Name, kind, unit, start value, limits and meaning of the named variables, or of all, a line each."""
+        rows = [("name", "kind", "unit", "start", "limits", "meaning")]
+        for variable in [self[name] for name in names] or self.by_name.values():
+            bounded = variable.min is not None or variable.max is not None
+            limits = f"{variable.min or '-inf'} to {variable.max or 'inf'}" if bounded else ""
+            rows.append((
+                variable.name, variable.causality, variable.unit or "", variable.start or "", limits,
+                variable.description or "",
+            ))  # fmt: skip
+        widths = [max(map(len, column)) for column in zip(*rows)]
+        return "\n".join("  ".join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip() for row in rows)
 
     def grouped(self, instance: FMU2Slave, names: Iterable[str]) -> list[Group]:
         """The names by FMI type, each group with its buffers; laid out once for each list of names."""

@@ -43,21 +43,23 @@ def _number(row: list[str], place: int, name: str, number: int) -> float:
         raise ValueError(f"{name} in row {number} is {text.strip() or 'missing'!r}; it must be a number") from None
 
 
-def check(time: ArrayLike, columns: Mapping[str, ArrayLike]) -> tuple[Floats, dict[str, Floats]]:
-    """The time and the columns as arrays, rows counted from 1 in what is said of them.
+def check(
+    time: ArrayLike, columns: Mapping[str, ArrayLike], *, clock: str = "time"
+) -> tuple[Floats, dict[str, Floats]]:
+    """The time and the columns as arrays; what is said of them counts rows from 1 and calls the time `clock`.
 
     Raises ValueError where columns differ in length, a value is no finite number, or the time does not increase.
     """
     time = np.asarray(time, dtype=float)
     checked = {name: np.asarray(column, dtype=float) for name, column in columns.items()}
-    for name, column in {"time": time, **checked}.items():
+    for name, column in {clock: time, **checked}.items():
         if column.shape != (len(time),):
-            raise ValueError(f"{name} has the shape {column.shape}; it must have {len(time)} rows, as time has")
+            raise ValueError(f"{name} has the shape {column.shape}; it must have {len(time)} rows, as {clock} has")
         bad = np.flatnonzero(~np.isfinite(column))
         if bad.size:
             raise ValueError(f"{name} in row {bad[0] + 1} is {column[bad[0]]}; it must be a finite number")
     back = np.flatnonzero(np.diff(time) <= 0)
     if back.size:
         row = back[0]
-        raise ValueError(f"time in row {row + 2} is {time[row + 1]:g} after {time[row]:g}; it must increase")
+        raise ValueError(f"{clock} in row {row + 2} is {time[row + 1]:g} after {time[row]:g}; it must increase")
     return time, checked

@@ -100,12 +100,12 @@ def limits() -> dict[str, tuple[float, float, float]]:
 
 
 def _column(name: str, values: Floats) -> Floats:
-    """The values of a column; ValueError with the row of one that is no number or out of range."""
+    """The values of a column; ValueError with the row, counted from 1, of one that is no number or out of range."""
     _, lowest, highest = limits()[name]
     bad = np.flatnonzero(~((lowest <= values) & (values <= highest) & np.isfinite(values)))
     if bad.size:
         raise ValueError(
-            f"{name} in row {bad[0]} is {values[bad[0]]:g}; it must be a number from {lowest:g} to {highest:g}"
+            f"{name} in row {bad[0] + 1} is {values[bad[0]]:g}; it must be a number from {lowest:g} to {highest:g}"
         )
     return values
 

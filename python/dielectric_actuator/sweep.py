@@ -31,6 +31,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import fmpy
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
@@ -40,7 +41,7 @@ from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
 from numpy.typing import ArrayLike
 
 from . import measures
-from .fmu import packed_fmu
+from .fmu import UnknownName, located
 from .measures import Measure
 
 Row = dict[str, Any]
@@ -70,19 +71,24 @@ def sweep(
     cluster: str | Cluster | None = None,
     workers: int | None = None,
     batch: int = BATCH,
-    fmu: Path | None = None,
+    fmu: str | Path = "nondimensional",
     patience: float = PATIENCE,
 ) -> pa.Table:
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
-    `scenes` holds a column of start values for each varied variable. `cluster` is the address of a Dask
-    scheduler, or one of Dask's cluster objects; without it `workers` processes are started here (default:
-    one a processor core). Raises `AnotherSweep` if `output` holds the results of one, `Unfinished` if
-    batches were lost or the cluster gave no sign of life for `patience` seconds.
+    `scenes` holds a column of start values for each varied variable of the actuator `fmu`, which is given as to
+    `Actuator`. `cluster` is the address of a Dask scheduler, or one of Dask's cluster objects; without it `workers`
+    processes are started here (default: one a processor core). Raises `UnknownName` for a column that is no variable,
+    `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost or the cluster gave no sign
+    of life for `patience` seconds.
     """
     columns = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
-    fmu = fmu or packed_fmu()
-    results = _Results(output, _fingerprint(measure, columns, fmu))
+    packed = located(fmu)
+    known = [variable.name for variable in fmpy.read_model_description(str(packed)).modelVariables]
+    for name in columns:
+        if name not in known:
+            raise UnknownName("variable", name, known)
+    results = _Results(output, _fingerprint(measure, columns, packed))
     count = len(next(iter(columns.values())))
     pending = np.setdiff1d(np.arange(count), results.finished())
     progress = Progress(count, count - len(pending))
@@ -90,7 +96,7 @@ def sweep(
     if len(pending):
         with _client(cluster, workers, patience) as client:
             heartbeats = Heartbeats(client, patience)
-            heartbeats.bounded(_equip, client, measure, fmu)
+            heartbeats.bounded(_equip, client, measure, packed)
             progress.begin(heartbeats.workers())
             batches = {}
             for start in range(0, len(pending), batch):

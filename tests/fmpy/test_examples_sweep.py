@@ -15,7 +15,7 @@ import pytest
 import command
 import dask_cluster
 import references
-from dielectric_actuator import grid, measures
+from dielectric_actuator import UnknownName, grid, measures
 from dielectric_actuator import sweep as engine
 from sweep_measures import fatal, whose
 
@@ -115,6 +115,17 @@ def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
     for measure, axes in ((long, {"phi": [0.1, 0.2]}), (short, {"phi": [0.1, 0.3]})):
         with pytest.raises(engine.AnotherSweep, match="remove it or write elsewhere"):
             engine.sweep(measure, grid(**axes), output, cluster=cluster, fmu=fmu_path)
+
+
+def test_an_unknown_name_is_said_before_anything_is_started(fmu_path, tmp_path):
+    measure = partial(measures.pull_in, stop_time=10.0)
+    with pytest.raises(UnknownName, match="no variable 'fi'; did you mean phi"):
+        engine.sweep(measure, grid(fi=[0.1]), tmp_path / "none.parquet", cluster="tcp://nowhere:1", fmu=fmu_path)
+
+
+def test_a_device_in_si_units_is_swept_too(cluster, tmp_path):
+    table = engine.sweep(whose, grid(voltage=[300.0, 600.0]), tmp_path / "si.parquet", cluster=cluster, fmu="si")
+    assert table["failure"].to_pylist() == [None, None] and table["voltage"].to_pylist() == [300.0, 600.0]
 
 
 def test_a_lost_batch_is_named_and_the_rest_kept(fmu_path, tmp_path):

@@ -51,9 +51,9 @@ def test_an_ensemble_does_not_depend_on_the_number_of_threads():
 
 
 @pytest.mark.parametrize("scenes, message", [
-    ({"phi": [0.1, 0.2, math.nan]}, "phi in row 2 is nan; it must be a number from"),
-    ({"phi": [0.1], "c": [100.0, -1.0]}, "c in row 1 is -1; it must be a number from 0.001"),
-    ({"phi": [0.1, 1e6]}, "phi in row 1 is 1e"),
+    ({"phi": [0.1, 0.2, math.nan]}, "phi in row 3 is nan; it must be a number from"),
+    ({"phi": [0.1], "c": [100.0, -1.0]}, "c in row 2 is -1; it must be a number from 0.001"),
+    ({"phi": [0.1, 1e6]}, "phi in row 2 is 1e"),
     ({"phi": [[0.1]]}, "dimensions"),
 ])  # fmt: skip
 def test_a_bad_value_of_an_ensemble_is_named_by_row_and_column(scenes, message):

@@ -32,7 +32,8 @@ def test_commands_run(tmp_path):
         program = Path(sys.executable).parent / name
         done = subprocess.run([program, *words], cwd=tmp_path, capture_output=True, text=True, timeout=600)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["map.csv", "pull_in.csv", "pull_in.png", "step.ssv"]
+    written = ["film.png", "map.csv", "pull_in.csv", "pull_in.png", "step.ssv"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == written
 
 
 def test_python_alone_is_enough(tmp_path, capsys):
