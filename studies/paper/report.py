@@ -128,6 +128,7 @@ def _small(path: Path) -> bytes:
 
 def gallery(folder: Path, keys: list[str], target: Path) -> None:
     """Copies of figures for a page: 1000 pixels wide, 256 colours."""
+    target.mkdir(parents=True, exist_ok=True)
     for key in keys:
         with Image.open(folder / f"{key}.png") as picture:
             scaled = picture.convert("RGB").resize((1000, round(1000 * picture.height / picture.width)))
