@@ -127,7 +127,7 @@ def bill_of_materials(metadata: dict, version: str) -> str:
     for name, member in SHIPPED.items():
         parts[name] = Component(name=name, version=version, bom_ref=name, licenses=licensed(own))
         linked = [
-            crates.setdefault(crate.bom_ref.value, crate) for crate in map(crate_of, linked_crates(metadata, member))
+            crates.setdefault(str(crate.bom_ref), crate) for crate in map(crate_of, linked_crates(metadata, member))
         ]
         contents[name] = [*linked, standard, plotting if name == PAGE else unwinder]
     asked = list(asked_for())
