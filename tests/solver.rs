@@ -456,16 +456,16 @@ fn extremes_are_recorded_exactly_and_whatever_the_steps() {
 /// Strides of 8 nodes against substeps of 16, each within ten tolerances of the
 /// truth.
 #[test]
-fn strides_end_where_substeps_do() {
+fn endpoint_only_steps_end_where_steps_with_dense_output_do() {
     for frequency in [0.05, 0.1438, 0.2764, 1.0] {
         let motion = alternating(SURFACE, 0.3, frequency);
         for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
-            let mut strides = from_rest(tolerance);
-            let mut substeps = from_rest(1e-13).without_strides();
+            let mut endpoint_only = from_rest(tolerance);
+            let mut substeps = from_rest(1e-13).without_endpoint_steps();
             for step in [1000.0, 37.0, 11.3, 120.0] {
-                advance(&mut strides, &motion, step);
+                advance(&mut endpoint_only, &motion, step);
                 advance(&mut substeps, &motion, step);
-                let difference = (strides.position() - substeps.position()).abs();
+                let difference = (endpoint_only.position() - substeps.position()).abs();
                 assert!(
                     difference < 10.0 * tolerance,
                     "ω = {frequency}, tolerance {tolerance:e}: {difference:e}"

@@ -46,7 +46,7 @@ fn a_stored_motion_goes_on_bit_for_bit() {
             }
             let stored = serde_json::to_string(&trajectory).expect("it can be stored");
             let mut restored: Trajectory = serde_json::from_str(&stored).expect("it was stored");
-            assert!(restored.is_sound());
+            assert!(restored.is_valid());
             for _ in 0..100 {
                 assert_eq!(restored.state(), trajectory.state(), "after {before}");
                 advance(&mut trajectory, motion, step);
@@ -66,7 +66,7 @@ fn a_forged_motion_is_not_sound() {
     let plain = stored(from_rest(1e-11));
     let recording = stored(from_rest(1e-11).recording_extremes());
     let sound =
-        |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_sound());
+        |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_valid());
     assert!(sound(plain.clone()) && sound(recording.clone()));
     let forged = |stored: &serde_json::Value, place: &str, more: f64| {
         let mut forged = stored.clone();
@@ -79,19 +79,19 @@ fn a_forged_motion_is_not_sound() {
     };
     for (stored, place, more) in [
         (&plain, "/start/position", 1e-9),
-        (&plain, "/pieces/1/begin/high", 1e-9),
-        (&plain, "/pieces/1/segment/start/rate", 1e-12),
-        (&plain, "/pieces/1/segment/end/position", 1e-12),
-        (&plain, "/pieces/0/segment/even/0", 1e-3),
-        (&plain, "/pieces/0/segment/odd/0", 1e-3),
+        (&plain, "/history/1/begin/high", 1e-9),
+        (&plain, "/history/1/segment/start/rate", 1e-12),
+        (&plain, "/history/1/segment/end/position", 1e-12),
+        (&plain, "/history/0/segment/even/0", 1e-3),
+        (&plain, "/history/0/segment/odd/0", 1e-3),
         (&plain, "/now/high", 1e3),
         (&plain, "/now/low", 1e3),
         (&plain, "/index", 1.0),
-        (&plain, "/slack", 1e-3),
-        (&plain, "/direction", 0.5),
+        (&plain, "/time_left", 1e-3),
+        (&plain, "/mode/Periodic/direction", 0.5),
         (&plain, "/advances", -1.0),
         (&plain, "/limits/upper", -9.5),
-        (&plain, "/orbit/period/high", 1e-9),
+        (&plain, "/mode/Periodic/orbit/period/high", 1e-9),
         (&recording, "/extremes/lowest", 1.0),
         (&recording, "/extremes/highest", 10.0),
     ] {
@@ -99,6 +99,10 @@ fn a_forged_motion_is_not_sound() {
         assert!(!sound(forged), "{place} in {stored:#}");
     }
     // Where it does not turn, with the period that goes with it.
-    let turn = forged(&plain, "/orbit/second_turn/high", -0.1);
-    assert!(!sound(forged(&turn, "/orbit/period/high", -0.2)));
+    let turn = forged(&plain, "/mode/Periodic/orbit/second_turn/high", -0.1);
+    assert!(!sound(forged(
+        &turn,
+        "/mode/Periodic/orbit/period/high",
+        -0.2
+    )));
 }

@@ -82,7 +82,7 @@ fn scenes_of_all_kinds_come_out_in_their_order() {
     assert!((time - 1_251.031_377).abs() < 1e-4, "{time}");
 }
 
-/// Whose iteration never moves by more than rounding: its strides grow all the same.
+/// Whose iteration never moves by more than rounding: its steps grow all the same.
 #[test]
 fn a_motion_next_to_rest_is_not_given_back() {
     let scene = alternating([0.0; 3], 1e-160, 0.1438);

@@ -253,7 +253,7 @@ impl Motion<Nondimensional> for Trajectory {
     }
 
     fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {
-        self.is_sound()
+        Trajectory::is_valid(self)
             && self.keeps_to(scene.limits, tolerance)
             && self.extremes().is_some() == scene.records_extremes()
     }

@@ -3,7 +3,7 @@
 //! Origin: J. C. Butcher, "Implicit Runge–Kutta processes", Math. Comp. 18
 //! (1964) 50–64. The stages are solved by fixed-point (Picard) iteration, which
 //! converges where the substep is not much longer than the motion's own time
-//! scale; each sweep evaluates f in all nodes at once, in SIMD lanes.
+//! scale; each iteration evaluates f in all nodes at once, in SIMD lanes.
 //!
 //! Accuracy: the end of a substep superconverges; between, the polynomial has
 //! the error of interpolating f, estimated by the end of its Legendre series.
@@ -14,16 +14,11 @@ use std::ops::RangeInclusive;
 
 use fearless_simd::{Level, Simd, dispatch, f64x4, f64x8};
 
+use super::iteration::{Diverged, IterationTolerance};
 use super::lanes::Lanes;
 use super::number::Number;
 use super::tables::{Columns, GAUSS_8, GAUSS_16, Tables};
 use super::{LocalEquation, State};
-
-/// Sweeps after which an iteration that still moves is given up.
-const MOST_SWEEPS: u32 = 40;
-
-/// Changes of what f adds to a position by less than this part of it are rounding.
-pub const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.
@@ -48,7 +43,7 @@ pub struct Substep<const P: usize> {
     pub highest: f64,
     /// Smallest position at a node.
     pub lowest: f64,
-    /// By how much a sweep shrank the change of the one before.
+    /// By how much an iteration shrank the change of the one before.
     pub contraction: f64,
 }
 
@@ -98,28 +93,6 @@ pub enum Guess<'a, const P: usize> {
     Begin(f64),
 }
 
-/// How closely the stages are to be solved.
-#[derive(Clone, Copy, Debug)]
-pub struct Closeness {
-    /// The position may be this far from the solution.
-    pub settled: f64,
-    /// A sweep that changes the position by less tells nothing.
-    pub rounding: f64,
-}
-
-impl Closeness {
-    /// Whether a sweep that changed the position by `change`, after one by `last_change`,
-    /// came close enough. The error left is the change times the rate of convergence,
-    /// which is given as two numbers that have that ratio.
-    #[inline(always)]
-    pub(super) fn is_reached(&self, change: f64, last_change: f64, rate: [f64; 2]) -> bool {
-        let [small, large] = rate;
-        change <= self.rounding
-            || change * small <= self.settled * (large - small)
-            || change >= last_change && change <= 16.0 * self.rounding
-    }
-}
-
 /// What a substep is asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Task<'a, const P: usize> {
@@ -128,16 +101,12 @@ pub struct Task<'a, const P: usize> {
     /// Its length.
     pub length: f64,
     /// When the iteration ends.
-    pub closeness: Closeness,
+    pub tolerance: IterationTolerance,
     /// What f is taken for at first.
     pub guess: Guess<'a, P>,
     /// The contraction that is expected; 1 where nothing is known.
     pub contraction: f64,
 }
-
-/// The fixed-point iteration did not converge: the substep is too long.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Diverged;
 
 /// `Σ_j column[j] · value[j]`, in a fixed order.
 #[inline(always)]
@@ -213,7 +182,7 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     let &Task {
         start,
         length,
-        closeness,
+        tolerance,
         ..
     } = task;
     let half = 0.5 * length;
@@ -258,9 +227,9 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     }
     let mut contraction = 0.0_f64;
     let mut last_change = f64::NAN;
-    let mut sweeps = 0;
+    let mut iterations = 0;
     loop {
-        sweeps += 1;
+        iterations += 1;
         let sums = (f[0] + f[1]).store();
         let differences = (f[0] - f[1]).store();
         let mean = dot(&tables.mean, &sums);
@@ -286,22 +255,22 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
             .largest();
         old = bent;
 
-        if sweeps > 1 {
+        if iterations > 1 {
             let ratio = change / last_change;
             let expected = if ratio.is_nan() {
                 task.contraction
             } else {
                 contraction.max(ratio)
             };
-            let done = closeness.is_reached(change, last_change, [expected, 1.0]);
-            if sweeps == 2 && done {
+            let done = tolerance.has_converged(iterations, change, last_change, [expected, 1.0])?;
+            if iterations == 2 && done {
                 // A change that is nothing but rounding tells nothing of it.
-                contraction = if change <= closeness.rounding {
+                contraction = if change <= tolerance.rounding {
                     0.0
                 } else {
                     expected
                 };
-            } else if sweeps > 2 && !(done && ratio > 1.0) {
+            } else if iterations > 2 && !(done && ratio > 1.0) {
                 contraction = contraction.max(ratio);
             }
             if done {
@@ -328,11 +297,6 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
                     lowest,
                     contraction,
                 });
-            }
-            // NaN fails each comparison and ends as divergence.
-            let converging = change < last_change || sweeps == 2 && change.is_finite();
-            if !converging || sweeps == MOST_SWEEPS {
-                return Err(Diverged);
             }
         }
         last_change = change;

@@ -28,7 +28,7 @@ pub enum Limit {
 impl Limits {
     /// Whether there is room between the limits.
     #[must_use]
-    pub fn are_sound(&self) -> bool {
+    pub fn are_valid(&self) -> bool {
         self.lower < self.upper && self.lower.is_finite() && self.upper.is_finite()
     }
 

@@ -1,20 +1,16 @@
 //! The integrator of x'' = f(t, x, x'). It knows no actuator and no FMI.
 //!
-//! * [`collocation`]: one substep of Gauss collocation, its nodes in SIMD [`lanes`];
-//! * [`segment`]: the polynomial that a substep of 16 nodes leaves behind;
-//! * `endpoint`: steps of 8 nodes over long ways, of which only the end is asked for;
-//! * `stride`: the same for a single way, after which the equation changes;
+//! * [`trajectory`]: a motion of this equation; [`coupled`]: one with first-order states and
+//!   dissipation; [`ensemble`]: many motions at once, one in each lane;
+//! * [`integrator`]: what the first two have in common: the clock, dense output, the loop over steps;
+//! * [`collocation`]: one step of Gauss collocation with dense output, its nodes in SIMD [`lanes`];
+//! * `endpoint`: steps of which only the end is asked for;
 //! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
-//! * [`ensemble`]: many motions at once, one in each lane;
-//! * [`coupled`]: the same with first-order states and dissipation;
-//! * [`step_control`]: how long the next substep may be;
+//! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;
+//! * [`segment`]: the polynomial that a step leaves behind;
+//! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
 //! * [`linearized`]: the motion beside a motion;
-//! * [`limits`]: where the motion leaves the range in which it is followed;
-//! * [`orbit`]: a motion that repeats;
-//! * [`extremes`]: how far the motion has swung;
-//! * `pieces`: the segments that are kept;
-//! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives;
-//! * [`trajectory`]: segments one after another, reused where the motion repeats.
+//! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives.
 
 pub mod collocation;
 pub mod coupled;
@@ -22,6 +18,8 @@ pub mod double;
 mod endpoint;
 pub mod ensemble;
 pub mod extremes;
+pub mod integrator;
+pub mod iteration;
 pub mod jet;
 pub mod lanes;
 pub mod limits;
@@ -29,11 +27,9 @@ pub mod linearized;
 pub mod number;
 pub mod orbit;
 mod outcome;
-mod pieces;
 pub mod segment;
 mod short_step;
 pub mod step_control;
-mod stride;
 mod tables;
 pub mod trajectory;
 

@@ -25,7 +25,7 @@ impl Orbit {
     }
 
     /// Whether the numbers can be those of an orbit.
-    pub fn is_sound(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         let [first, second] = self.turns();
         second.since(first) > 0.0 && self.period == Orbit::between(first, second).period
     }

@@ -67,18 +67,21 @@ impl Segment {
 
     /// The length of the substep.
     #[must_use]
+    #[inline]
     pub fn length(&self) -> f64 {
         2.0 * self.half
     }
 
     /// The state at the begin.
     #[must_use]
+    #[inline]
     pub fn start(&self) -> State {
         self.start
     }
 
     /// The state at the end, more accurate than the polynomial between.
     #[must_use]
+    #[inline]
     pub fn end(&self) -> State {
         self.end
     }
@@ -86,7 +89,7 @@ impl Segment {
     /// Whether the numbers can be those of a substep: from its start f, whatever it
     /// follows, leads to its end.
     #[must_use]
-    pub fn is_sound(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         let State { position, rate } = self.start;
         let drift = self.length() * rate;
         let [mean, tilt] = [self.even[0], self.odd[0] / 3.0];

@@ -19,9 +19,6 @@ use super::{Equation, LocalEquation, Sensitivity, State};
 /// A short step is shorter than this part of the motion's time scale.
 const SHORT: f64 = 0.25;
 
-/// Iterations after which it is given up: each shrinks the error some thirtyfold at least.
-const MOST_ITERATIONS: u32 = 16;
-
 /// What a single iteration may leave in a time scale, as a part of the tolerance for what
 /// is repeated: seen only after 1e4 time scales in which it always has the same sign.
 const LEFT_BY_ONE: f64 = 0.1;
@@ -38,7 +35,7 @@ pub struct ShortStep<'a> {
     /// How long it is.
     pub length: f64,
     /// Positions between which it may go.
-    pub clear: (f64, f64),
+    pub bounds: (f64, f64),
 }
 
 /// What f was in the last short step, from which it is guessed what it will be in the next
@@ -81,7 +78,7 @@ impl Trend {
 
 impl ShortStep<'_> {
     /// Moves the state to its end and tells what f was. False where it is too long or
-    /// does not stay between the clear positions; then nothing has changed.
+    /// does not stay between the bounds; then nothing has changed.
     ///
     /// The state is changed where it lies, since the next step waits for it: handing it on
     /// in memory takes a tenth of an iteration each time.
@@ -111,8 +108,8 @@ impl ShortStep<'_> {
         let scale = state.position.abs();
         let part = solved.part;
         let missed = quadrature_error(&local, solved.response, *state, self.length, part);
-        let good = solved.stays_between(self.clear, *state)
-            && solved.is_within(control.settled_within(part) * scale)
+        let good = solved.stays_between(self.bounds, *state)
+            && solved.is_within(control.end_tolerance_within(part) * scale)
             && missed <= (control.tolerance * part).max(UNSEEN) * scale;
         if !good {
             return None;
@@ -270,7 +267,7 @@ fn solve<S: Simd, L: LocalEquation>(
     // What is left of an error of the guess is known beforehand.
     let contraction = part * part + damping * length;
     if change * contraction > LEFT_BY_ONE * control.tolerance * scale * (part * part) {
-        let closeness = control.closeness(scale, part);
+        let tolerance = control.iteration_tolerance(scale, part);
         let mut iterations = 1;
         loop {
             iterations += 1;
@@ -284,11 +281,10 @@ fn solve<S: Simd, L: LocalEquation>(
             new = twice * fill(square);
             let last_change = change;
             change = Lanes::<S, 4>::abs(new - bent).largest();
-            if closeness.is_reached(change, last_change, [change, last_change]) {
+            let rate = [change, last_change];
+            let converged = tolerance.has_converged(iterations, change, last_change, rate);
+            if converged.ok()? {
                 break;
-            }
-            if change >= last_change || iterations == MOST_ITERATIONS {
-                return None;
             }
         }
     }
@@ -399,7 +395,7 @@ mod tests {
                 upper: 1e3,
             };
             let exact = Trajectory::new(state, Double::ZERO, limits, 1e-14);
-            let mut exact = exact.without_strides();
+            let mut exact = exact.without_endpoint_steps();
             let followed = exact.advance(&equation, length);
             followed.expect("it can be followed");
             let position = solved.end.position - exact.position();

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::collocation::{Closeness, ROUNDING};
+use super::iteration::IterationTolerance;
 
 /// Order with which the error inside a substep of 16 nodes falls: the first
 /// neglected Legendre coefficient of f (degree 16), twice integrated.
@@ -12,10 +12,10 @@ const ORDER_INSIDE: f64 = 18.0;
 /// stages are solved: unlike the error between the nodes, what is left there
 /// adds up from substep to substep (1e3-fold in 2000 units of time of a
 /// resonant motion).
-const SETTLED: f64 = 2e-4;
+const LEFT_AT_END: f64 = 2e-4;
 
-/// The same at a tight tolerance, where a sweep more costs little.
-const SETTLED_TIGHTLY: f64 = 5e-5;
+/// This part at a tight tolerance, where an iteration more costs little.
+const LEFT_AT_END_TIGHTLY: f64 = 5e-5;
 
 /// Errors of this part of the position, one in each step, are not seen beside the
 /// rounding of 1e6 steps.
@@ -28,10 +28,11 @@ const REPEATED_SHARE: f64 = 0.001;
 /// square of the length, and near 1 the iteration diverges.
 pub(super) const SLOW: f64 = 0.35;
 
-/// The same of a stride, whose first guess is good for short ones only.
-const SLOW_STRIDE: f64 = 0.25;
+/// The contraction that is slow in an endpoint-only step, whose first guess is good for short ones
+/// only.
+const SLOW_ENDPOINT: f64 = 0.25;
 
-/// Tolerance above which strides of 8 nodes are faster than those of 16. Measured
+/// Tolerance above which single endpoint-only steps of 8 nodes are faster than those of 16. Measured
 /// near resonance, at equal error: 25 % at 1e-6, nothing at 1e-10.
 const LOOSE: f64 = 3e-10;
 
@@ -46,13 +47,46 @@ pub struct StepControl {
     pub tolerance: f64,
 }
 
-/// What to do with a substep that has been solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
-    /// Keep it; the next one may be longer or shorter by this factor.
-    Accept(f64),
-    /// Solve it again, shorter by this factor.
-    Reject(f64),
+/// A step that is short enough.
+#[derive(Clone, Copy, Debug)]
+pub struct Accepted<T> {
+    /// The step.
+    pub step: T,
+    /// Its length.
+    pub length: f64,
+    /// The next one may be longer or shorter by this factor.
+    pub factor: f64,
+}
+
+/// By what a step is shortened that says nothing about how long it may be.
+pub const HALVED: f64 = 0.5;
+
+/// Attempts steps of this length and shorter ones, until one is accepted. An attempt returns the
+/// step and by which factor the next one may be longer, or by which factor to shorten this one.
+///
+/// # Errors
+/// The length that is no longer than `shortest`, or NaN.
+#[inline(always)]
+pub fn first_accepted<T>(
+    mut length: f64,
+    shortest: f64,
+    mut attempt: impl FnMut(f64) -> Result<(T, f64), f64>,
+) -> Result<Accepted<T>, f64> {
+    loop {
+        if length.is_nan() || length <= shortest {
+            return Err(length);
+        }
+        match attempt(length) {
+            Ok((step, factor)) => {
+                return Ok(Accepted {
+                    step,
+                    length,
+                    factor,
+                });
+            }
+            Err(factor) => length *= factor,
+        }
+    }
 }
 
 impl StepControl {
@@ -64,7 +98,7 @@ impl StepControl {
 
     /// Whether the tolerance is one.
     #[must_use]
-    pub fn is_sound(&self) -> bool {
+    pub fn is_valid(&self) -> bool {
         self.tolerance > 0.0 && self.tolerance < 1.0
     }
 
@@ -74,76 +108,96 @@ impl StepControl {
         self.tolerance > LOOSE
     }
 
-    /// The same for what is repeated: an orbit is as long as the caller likes, and so
-    /// is its error; the errors of ever new starts add up. Neither costs more than
-    /// a sweep or two.
+    /// The control of what is repeated: an orbit is as long as the caller likes, and so is its
+    /// error; the errors of ever new starts add up. Neither costs more than an iteration or two.
     #[must_use]
     pub fn repeated(&self) -> StepControl {
         StepControl::new(REPEATED_SHARE * self.tolerance)
     }
 
-    /// How closely the stages of a substep have to be solved.
+    /// The error that may be left at the end of a step, relative to the position.
     #[must_use]
-    pub fn settled(&self) -> f64 {
+    pub fn end_tolerance(&self) -> f64 {
         let share = if self.is_loose() {
-            SETTLED
+            LEFT_AT_END
         } else {
-            SETTLED_TIGHTLY
+            LEFT_AT_END_TIGHTLY
         };
         share * self.tolerance
     }
 
-    /// The same of a substep that is a `part` of the motion's time scale, relative to
-    /// the position: the shorter, the more there are.
+    /// The error that may be left at the end of a step that is a `part` of the motion's time scale,
+    /// relative to the position: the shorter steps are, the more there are.
     #[must_use]
-    pub fn settled_within(&self, part: f64) -> f64 {
-        (self.settled() * part.min(1.0)).max(UNSEEN)
+    pub fn end_tolerance_within(&self, part: f64) -> f64 {
+        (self.end_tolerance() * part.min(1.0)).max(UNSEEN)
     }
 
-    /// The same, for the iteration, from this position on. What a sweep leaves of f
+    /// How accurately the stages of such a step from this position are solved. What an iteration leaves of f
     /// makes an error of the rate that is, in the time scale, 1/part times that of
     /// the position; and the rounding of f moves the position by as little as f.
     #[must_use]
-    pub fn closeness(&self, position: f64, part: f64) -> Closeness {
+    pub fn iteration_tolerance(&self, position: f64, part: f64) -> IterationTolerance {
         let short = part.min(1.0);
-        Closeness {
-            settled: self.settled_within(part) * position * short,
-            rounding: ROUNDING * position * short * short,
-        }
+        let error = self.end_tolerance_within(part) * position * short;
+        IterationTolerance::new(error, position * short * short)
     }
 
-    /// Judges a substep by its estimated error inside, relative to the position,
-    /// and by the contraction of its fixed-point iteration.
-    #[must_use]
-    pub fn judge(&self, error: f64, contraction: f64) -> Verdict {
-        verdict(error / self.tolerance, ORDER_INSIDE, SLOW / contraction)
+    /// Judges a step with dense output by its estimated error inside, relative to the position, and
+    /// by the contraction of its iteration: by which factor the next one may be longer.
+    ///
+    /// # Errors
+    /// By which factor to shorten it.
+    pub fn judge(&self, error: f64, contraction: f64) -> Result<f64, f64> {
+        judge(error / self.tolerance, ORDER_INSIDE, SLOW / contraction)
     }
 
-    /// The same of a stride of P node pairs by its estimated error at the end.
-    #[must_use]
-    pub fn judge_stride<const P: usize>(&self, error: f64, contraction: f64) -> Verdict {
-        verdict(
-            error / self.settled(),
+    /// Judges an endpoint-only step of P node pairs by its estimated error at the end, and by the
+    /// contraction of its iteration, as [`StepControl::judge`] does.
+    pub fn judge_end<const P: usize>(&self, error: f64, contraction: f64) -> Result<f64, f64> {
+        judge(
+            error / self.end_tolerance(),
             4.0 * P as f64,
-            SLOW_STRIDE / contraction,
+            SLOW_ENDPOINT / contraction,
         )
     }
 }
 
 /// What follows from an error by `ratio` larger than allowed, of this `order`, and from how much
-/// longer (squared) the step may be for the iteration's sake.
-pub(super) fn verdict(ratio: f64, order: f64, effort: f64) -> Verdict {
-    // Below 1e-30 the error is nothing at all.
-    let by_error = CAUTION * power(ratio.max(1e-30), -1.0 / order);
-    if ratio.is_nan() || ratio > 1.0 {
-        return Verdict::Reject(by_error.max(0.2));
+/// longer (squared) the step may be for the iteration's sake: by which factor the next one may be
+/// longer.
+///
+/// # Errors
+/// By which factor to shorten it.
+pub fn judge(ratio: f64, order: f64, effort: f64) -> Result<f64, f64> {
+    if ratio <= 1.0 {
+        Ok(factor(ratio, order).min(effort.sqrt()).clamp(0.2, 3.0))
+    } else {
+        Err(shortened(ratio, order))
     }
-    Verdict::Accept(by_error.min(effort.sqrt()).clamp(0.2, 3.0))
+}
+
+/// By which factor to shorten a step whose error, of this `order`, is by `ratio` larger than
+/// allowed, or NaN.
+#[inline(always)]
+pub fn shortened(ratio: f64, order: f64) -> f64 {
+    if ratio.is_nan() {
+        return HALVED;
+    }
+    factor(ratio, order).max(0.2)
+}
+
+/// By which factor a step may be longer whose error, of this `order`, is by `ratio` larger than
+/// allowed.
+#[inline(always)]
+pub fn factor(ratio: f64, order: f64) -> f64 {
+    // Below 1e-30 the error is nothing at all.
+    CAUTION * power(ratio.max(1e-30), -1.0 / order)
 }
 
 /// `x` to a small `exponent`, to a few thousandths: a logarithm that is linear
-/// between powers of 2, since the real one takes as long as two sweeps.
-pub(super) fn power(x: f64, exponent: f64) -> f64 {
+/// between powers of 2, since the real one takes as long as two iterations.
+fn power(x: f64, exponent: f64) -> f64 {
     const ONE: f64 = 1.0_f64.to_bits() as f64;
     f64::from_bits((ONE + exponent * (x.to_bits() as f64 - ONE)) as u64)
 }
@@ -155,14 +209,14 @@ mod tests {
     #[test]
     fn an_error_above_the_tolerance_is_rejected_and_shortens() {
         let control = StepControl::new(1e-9);
-        assert!(matches!(control.judge(1e-3, 0.1), Verdict::Reject(f) if f < 0.6));
-        assert!(matches!(control.judge(1e-12, 0.01), Verdict::Accept(f) if f > 1.0));
-        assert!(matches!(control.judge(0.99e-9, 0.01), Verdict::Accept(f) if f < 1.0));
+        assert!(matches!(control.judge(1e-3, 0.1), Err(f) if f < 0.6));
+        assert!(matches!(control.judge(1e-12, 0.01), Ok(f) if f > 1.0));
+        assert!(matches!(control.judge(0.99e-9, 0.01), Ok(f) if f < 1.0));
     }
 
     #[test]
     fn slow_convergence_shortens_an_accurate_substep() {
         let control = StepControl::new(1e-9);
-        assert!(matches!(control.judge(0.0, 0.7), Verdict::Accept(f) if f < 1.0));
+        assert!(matches!(control.judge(0.0, 0.7), Ok(f) if f < 1.0));
     }
 }

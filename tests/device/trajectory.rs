@@ -39,7 +39,7 @@ fn a_saved_motion_goes_on_bit_for_bit() {
                 let step = 3.1 + f64::from(k) * 11.3;
                 let bytes = postcard::to_allocvec(&trajectory).expect("bytes");
                 let mut restored: Trajectory = postcard::from_bytes(&bytes).expect("a motion");
-                assert!(restored.is_sound(), "{name} {k}");
+                assert!(restored.is_valid(), "{name} {k}");
                 assert!(restored.keeps_to(LIMITS, 1e-9));
                 assert_eq!(all(&restored), all(&trajectory), "{name} {k}");
                 let ends = [
@@ -70,7 +70,7 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
                 let Ok(mut restored) = postcard::from_bytes::<Trajectory>(&damaged) else {
                     continue;
                 };
-                if restored.is_sound() {
+                if restored.is_valid() {
                     let _ = restored.advance(&motion, 1.0);
                     assert!(restored.position().is_finite(), "{name}, byte {place}");
                 }

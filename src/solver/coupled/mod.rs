@@ -3,8 +3,8 @@
 //!
 //! * `rule`: nodes and weights, Gauss and Radau IIA;
 //! * [`stages`]: one step of collocation;
-//! * `course`: one state over the nodes of a step;
-//! * `piece`: the polynomials that a step leaves behind;
+//! * `stage_values`: one state over the nodes of a step;
+//! * `polynomials`: first-order states and integrals over a step;
 //! * [`trajectory`]: steps one after another.
 //!
 //! Method: x is found by fixed-point iteration, as for the plain equation. What relaxes, the
@@ -14,12 +14,11 @@
 //! along the motion (energies supplied and lost) do not act back; they are summed up once the
 //! stages are known.
 
-mod course;
-mod piece;
+mod polynomials;
 mod rule;
+mod stage_values;
 pub mod stages;
 pub mod trajectory;
-mod validation;
 
 pub use trajectory::{Event, Failure, Progress, Trajectory};
 

@@ -15,20 +15,17 @@
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 use nalgebra::{Const, DimMin, ToTypenum};
 
-use super::course::{Course, Row, largest_change, load, product, series, store};
-use super::piece::{Coefficients, TERMS};
+use super::polynomials::{Coefficients, TERMS};
 use super::rule::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
+use super::stage_values::{Row, StageValues, largest_change, load, product, series, store};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage};
 use crate::solver::State;
-use crate::solver::collocation::{Closeness, Diverged};
+use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::lanes::Lanes;
-
-/// Iterations after which one that still moves is given up.
-const MOST_ITERATIONS: u32 = 40;
 
 /// Slopes over a step by their Legendre coefficients.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Series {
+pub(super) struct Slopes {
     /// Half the length of the step.
     pub half: f64,
     /// x''.
@@ -51,9 +48,9 @@ pub(super) struct Task<'a> {
     /// What errors are compared to.
     pub sizes: &'a Sizes,
     /// When the iteration ends, in units of the sizes.
-    pub closeness: Closeness,
+    pub tolerance: IterationTolerance,
     /// The step before, where the slopes go on from it.
-    pub before: Option<&'a Series>,
+    pub before: Option<&'a Slopes>,
 }
 
 /// A step that has been solved.
@@ -62,7 +59,7 @@ pub(super) struct Step {
     /// The state at its end.
     pub end: FullState,
     /// The slopes over it.
-    pub series: Series,
+    pub series: Slopes,
     /// The derivatives of the integrals.
     pub powers: [Coefficients; MOST_INTEGRALS],
     /// Number of nodes.
@@ -146,7 +143,7 @@ where
         states,
         integrals,
         sizes,
-        closeness,
+        tolerance,
         before,
     } = task;
     let half = 0.5 * length;
@@ -159,11 +156,11 @@ where
     let first_stage = start.stage();
     let first_load = local.load(0.0);
     let first_slopes = local.slopes(first_load, &first_stage);
-    let mut internal: [Course<S, R, N>; MOST_STATES] = std::array::from_fn(|k| {
+    let mut internal: [StageValues<S, R, N>; MOST_STATES] = std::array::from_fn(|k| {
         let before = before.map(|series| (series.half, &series.internal[k]));
-        Course::guess(simd, rule, half, first_slopes[k], before)
+        StageValues::guess(simd, rule, half, first_slopes[k], before)
     });
-    let mut motion = Course::<S, R, N>::guess(
+    let mut motion = StageValues::<S, R, N>::guess(
         simd,
         rule,
         half,
@@ -174,8 +171,8 @@ where
         product(simd, &rule.twice, slopes).map(|sum| sum * fill(half * half))
     };
     let mut bent = bend(&motion.slopes);
-    let stages = |internal: &[Course<S, R, N>; MOST_STATES],
-                  motion: &Course<S, R, N>,
+    let stages = |internal: &[StageValues<S, R, N>; MOST_STATES],
+                  motion: &StageValues<S, R, N>,
                   bent: &Row<S, R>|
      -> [Stage<f64x8<S>>; R] {
         std::array::from_fn(|r| Stage {
@@ -212,17 +209,12 @@ where
         if iterations > 1 {
             let ratio = change / last_change;
             let expected = contraction.max(ratio);
-            let done = closeness.is_reached(change, last_change, [expected, 1.0]);
-            if iterations > 2 && !done || iterations == 2 && change > closeness.rounding {
+            let done = tolerance.has_converged(iterations, change, last_change, [expected, 1.0])?;
+            if iterations > 2 && !done || iterations == 2 && change > tolerance.rounding {
                 contraction = expected;
             }
             if done {
                 break;
-            }
-            // NaN fails each comparison and ends as divergence.
-            let converging = change < last_change || iterations == 2 && change.is_finite();
-            if !converging || iterations == MOST_ITERATIONS {
-                return Err(Diverged);
             }
         }
         last_change = change;
@@ -257,7 +249,7 @@ where
             [0.0; TERMS]
         }
     });
-    let series = Series {
+    let series = Slopes {
         half,
         motion: motion.series(simd, rule),
         internal: std::array::from_fn(|k| {

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{Pair, Plan, largest};
-use crate::solver::collocation::Closeness;
+use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::jet::Dual;
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
@@ -11,9 +11,6 @@ use crate::solver::{LocalEquation, State};
 
 /// States over which the slope of a plan is averaged.
 pub const AVERAGED: f64 = 16.0;
-
-/// Iterations after which one that still moves is given up.
-pub const MOST_ITERATIONS: u32 = 40;
 
 /// The stages of a step, as far as they have been iterated.
 pub struct Stages<S: Simd> {
@@ -27,11 +24,12 @@ pub struct Stages<S: Simd> {
     pub change: f64,
     /// By how much the one before did.
     pub last_change: f64,
-    /// Whether that was enough.
-    pub close: bool,
 }
 
-/// Iterates the stages of a step from a guess of g.
+/// Iterates the stages of a step from a guess of g, `planned` times at least.
+///
+/// # Errors
+/// [`Diverged`]: a shorter step will do.
 #[inline(always)]
 #[expect(clippy::too_many_arguments, reason = "in registers, each by its name")]
 pub fn solve<S: Simd, L: LocalEquation>(
@@ -42,8 +40,8 @@ pub fn solve<S: Simd, L: LocalEquation>(
     state: State,
     guess: Pair<S>,
     planned: u32,
-    closeness: Closeness,
-) -> Stages<S> {
+    tolerance: IterationTolerance,
+) -> Result<Stages<S>, Diverged> {
     let free = plan.free(simd, state.rate);
     let start = f64x4::splat(simd, state.position);
     let slope = f64x4::splat(simd, -plan.slope);
@@ -67,18 +65,15 @@ pub fn solve<S: Simd, L: LocalEquation>(
         let change = reach * largest::<S>([g[0] - last[0], g[1] - last[1]]);
         let last_change =
             reach * largest::<S>([last[0] - before_last[0], last[1] - before_last[1]]);
-        let close = closeness.is_reached(change, last_change, [change, last_change]);
-        // NaN fails each comparison and ends the iteration.
-        let converging = change < last_change;
-        if close || !converging || iterations == MOST_ITERATIONS {
-            return Stages {
+        let rate = [change, last_change];
+        if tolerance.has_converged(iterations, change, last_change, rate)? {
+            return Ok(Stages {
                 g,
                 displacement,
                 iterations,
                 change,
                 last_change,
-                close: close && change.is_finite(),
-            };
+            });
         }
     }
 }
@@ -86,7 +81,7 @@ pub fn solve<S: Simd, L: LocalEquation>(
 /// Whether a step stays between these positions: between two nodes the motion may go a
 /// little beyond both.
 #[inline(always)]
-pub fn is_clear<S: Simd>(
+pub fn stays_between<S: Simd>(
     (lowest, highest): (f64, f64),
     position: f64,
     moved: f64,

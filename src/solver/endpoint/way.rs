@@ -15,7 +15,7 @@ pub struct Way {
     /// The time to be reached, counted from there.
     pub target: Double,
     /// Positions between which steps may go.
-    pub clear: (f64, f64),
+    pub bounds: (f64, f64),
     /// How many steps may still be solved.
     pub budget: u32,
 }
@@ -46,7 +46,7 @@ impl Way {
 pub enum End {
     /// At the time to be reached.
     Reached,
-    /// Where the next one would not stay between the clear positions, or would be too short.
+    /// Where the next one would not stay between the bounds, or would be too short.
     Blocked,
     /// Where the budget is spent.
     TooMany,

@@ -265,7 +265,7 @@ impl<E: Equation> Course<'_, E> {
         let share = (START_SHARE * self.tolerance).max(1e-14);
         let mut alone = Trajectory::new(state, lane.time, limits, share)
             .with_level(self.level)
-            .without_strides()
+            .without_endpoint_steps()
             .recording_extremes();
         for place in 0..ORDER {
             if place > 0 && alone.advance(equation, step) != Ok(Progress::Whole) {

@@ -20,7 +20,7 @@ impl Trajectory {
         self.stand_at(time, state);
         let local = equation.seen_from(&time);
         let substep = self
-            .substep(&local, state, true, most)
+            .step(&local, state, true, most)
             .map_err(|length| Failure::SubstepTooShort { length, after: 0.0 })?;
         let mut segment = Segment::new(state, substep.end, &substep.series);
         segment.expand();

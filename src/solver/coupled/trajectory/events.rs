@@ -1,53 +1,44 @@
 //! Where a step meets a limit of the position, or the margin of the equation vanishes.
 
-use super::{Event, Piece, Trajectory};
+use super::{Event, Trajectory};
 use crate::solver::coupled::{CoupledEquation, LocalCoupledEquation, Stage};
-use crate::solver::limits::Limits;
 use crate::solver::segment::{PARTS, Segment};
 
 impl Trajectory {
-    /// Looks for the first event in the last piece, whose nodes lie in the `range`.
+    /// Looks for the first event in the last step, whose nodes lie in the `range`.
     pub(super) fn look_for_events<E: CoupledEquation>(
         &mut self,
         equation: &E,
         local: &E::Local<'_>,
         [lowest, highest]: [f64; 2],
     ) {
-        let awaits = self.awaits_margin && equation.awaits_event();
-        let limits = self.limits;
-        let Some(piece) = self.pieces.last_mut() else {
-            return;
-        };
-        let from_origin = |limit: f64| -piece.origin.plus(-limit).value();
-        let limits = Limits {
-            lower: from_origin(limits.lower),
-            upper: from_origin(limits.upper),
-        };
         let beyond = 0.25 * (highest - lowest);
-        let contact = limits.first_contact(&mut piece.segment, lowest - beyond..=highest + beyond);
+        let contact = self.first_contact(lowest - beyond, highest + beyond);
         let mut stop = contact.map(|(limit, offset)| (Event::Limit(limit), offset));
-        let Piece { begin, .. } = *piece;
-        if awaits {
-            piece.segment.expand();
-            let segment = piece.segment;
-            let margin = |_: &Segment, offset: f64| {
-                let internal = self
-                    .rest
-                    .as_ref()
-                    .map_or(self.start.internal, |rest| rest.internal(offset));
+        if self.method.awaits_margin
+            && equation.awaits_event()
+            && let Some(step) = self.history.steps_mut().last_mut()
+        {
+            step.segment.expand();
+            let segment = &step.segment;
+            let internal = |offset| match &self.method.polynomials {
+                Some(polynomials) => polynomials.internal(offset),
+                None => self.method.internal,
+            };
+            let margin = |segment: &Segment, offset: f64| {
                 let stage = Stage {
                     position: segment.position(offset),
                     rate: segment.rate(offset),
-                    internal,
+                    internal: internal(offset),
                 };
                 local.margin(offset, &stage)
             };
             let until = stop.map_or(segment.length(), |(_, offset)| offset);
-            if let Some(offset) = first_below(&segment, until, margin) {
+            if let Some(offset) = first_below(segment, until, margin) {
                 stop = Some((Event::Margin, offset));
             }
         }
-        self.stop = stop.map(|(event, offset)| (event, begin.plus(offset)));
+        self.stop_in_last_step(stop);
     }
 }
 

@@ -1,14 +1,16 @@
 //! The next step of a motion.
 
-use super::{CAPACITY, Piece, Trajectory};
-use crate::solver::collocation::{Closeness, Diverged, ROUNDING, Series as MotionSeries};
-use crate::solver::coupled::piece::Rest;
-use crate::solver::coupled::stages::{self, Series, Step, Task};
+use super::Trajectory;
+use super::evaluation::by_degree;
+use crate::solver::collocation::Series;
+use crate::solver::coupled::polynomials::Polynomials;
+use crate::solver::coupled::stages::{self, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
 use crate::solver::double::Double;
-use crate::solver::orbit::Orbit;
+use crate::solver::integrator::Mode;
+use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::segment::{PAIRS, Segment};
-use crate::solver::step_control::{SLOW, StepControl, Verdict, verdict};
+use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};
 
 /// Part of the tolerance that one step may spend between its ends: a motion may swing by much
 /// less than its position is large. With 16 nodes that costs a tenth more steps.
@@ -43,86 +45,66 @@ impl Trajectory {
         equation: &E,
         rest: f64,
     ) -> Result<Double, f64> {
-        let begin = self.end();
-        let first = self.pieces.is_empty();
-        let (mut origin, mut start) = match self.pieces.last() {
-            Some(piece) => {
-                let mut state = self.start;
-                state.motion = piece.segment.end();
-                if let Some(rest) = &self.rest {
-                    state.internal = rest.end.internal;
-                    state.integrals = rest.end.integrals;
-                }
-                (piece.origin, state)
-            }
-            None => (self.origin, self.start),
-        };
+        let begin = self.history.end();
+        let first = self.history.is_empty();
+        let (mut origin, mut start) = (self.position_origin, self.full_start());
+        if let Some(step) = self.history.steps().last() {
+            origin = step.origin;
+            start.motion = step.segment.end();
+        }
+        if let Some(polynomials) = &self.method.polynomials {
+            start = polynomials.end;
+        }
         let nearest = equation.origin_near(start.motion.position, origin);
         if nearest != origin {
             let moved = origin.sub(nearest).plus(start.motion.position);
             start.motion.position = moved.value();
             origin = nearest;
         }
-        let local = equation.at(&self.since.add(begin), &origin);
+        let local = equation.at(&self.time_origin.add(begin), &origin);
         let (states, integrals) = (equation.states(), equation.integrals());
         let repeats = states == 0
             && integrals == 0
             && equation.is_autonomous()
             && equation.is_time_reversible();
         if equation.is_autonomous() && first && integrals == 0 && stands(&local, &start, states) {
-            self.at_rest = true;
+            self.mode = Mode::AtRest;
             return Ok(Double::ZERO);
         }
         let method = Method {
             states,
             integrals,
             stiff: equation.is_stiff(),
-            few: self.restless,
-            control: if repeats || self.restless {
+            few: self.restarts_at_every_step,
+            control: if repeats || self.restarts_at_every_step {
                 self.control.repeated()
             } else {
                 StepControl::new(SHARE * self.control.tolerance)
             },
         };
-        let most = if self.restless { rest } else { f64::INFINITY };
+        let most = if self.restarts_at_every_step {
+            rest
+        } else {
+            f64::INFINITY
+        };
         let step = self.step(&local, &start, origin, &method, most)?;
-        // What has been passed is forgotten, and time counted from here, unless the pieces may
-        // still make an orbit.
-        let keep = repeats && self.pieces.len() < CAPACITY;
-        let mut shift = Double::ZERO;
-        if !keep {
-            if !first {
-                self.arrive(begin);
-            }
-            shift = begin;
-            self.since = self.since.add(begin);
-            self.now = self.now.sub(begin);
-            self.recorded = self.recorded.sub(begin);
-            self.index = 0;
-            self.first_turn = None;
-            self.pieces.clear();
-        }
-        if self.pieces.is_empty() {
-            self.start = start;
-            self.origin = origin;
-        }
-        let begin = begin.sub(shift);
         let segment = Segment::new(start.motion, step.end.motion, &motion_series(&step));
-        self.rest = (states > 0 || integrals > 0).then_some(Rest {
-            half: step.series.half,
-            start,
-            end: step.end,
-            slopes: step.series.internal,
-            powers: step.powers,
-        });
-        self.pieces.push(Piece {
-            begin,
-            origin,
-            segment,
-        });
+        // The steps are kept while they may still make an orbit.
+        let shift = self.push(origin, segment, repeats);
+        if states > 0 || integrals > 0 {
+            self.method.internal = start.internal;
+            self.method.integrals = start.integrals;
+            self.method.polynomials = Some(Polynomials {
+                half: step.series.half,
+                start,
+                end: step.end,
+                slopes: step.series.internal,
+                powers: step.powers,
+            });
+        }
         self.look_for_events(equation, &local, step.range);
-        if repeats && self.stop.is_none() {
-            self.look_for_turn(start.motion.rate);
+        if repeats {
+            self.look_for_turn();
         }
         Ok(shift)
     }
@@ -143,7 +125,7 @@ impl Trajectory {
         }
         let scale = 1.0 / local.natural_frequency(&stage);
         let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
-        let fresh = self.pieces.is_empty();
+        let fresh = self.history.is_empty();
         if fresh {
             free = free.min(self.transient(local, start, &sizes, method));
         }
@@ -152,12 +134,13 @@ impl Trajectory {
         let seen = nodes * 4.0 * std::f64::consts::PI / local.load_frequency();
         let most = most.min(seen);
         let shortest = (SHORTEST * scale).min(0.5 * most);
-        let mut length = free.min(most);
-        let before = self.series_before(fresh);
-        loop {
-            if length.is_nan() || length <= shortest {
-                return Err(length);
-            }
+        let before = self.slopes_of_last_step(fresh);
+        let control = method.control;
+        let Accepted {
+            step,
+            length,
+            factor,
+        } = first_accepted(free.min(most), shortest, |length| {
             let part = (length / scale).min(1.0);
             let task = Task {
                 start,
@@ -165,47 +148,31 @@ impl Trajectory {
                 states: method.states,
                 integrals: method.integrals,
                 sizes: &sizes,
-                closeness: Closeness {
-                    settled: method.control.settled_within(part),
-                    rounding: ROUNDING,
-                },
+                tolerance: IterationTolerance::new(control.end_tolerance_within(part), 1.0),
                 before: before.as_ref(),
             };
             let solved = stages::solve(self.level, local, &task, [method.stiff, method.few]);
-            let verdict = match &solved {
-                Ok(step) => {
-                    let ends = step.range.map(|position| local.size_of(position));
-                    let least = ends[0].min(ends[1]);
-                    if least < SHRINKING * sizes.position || self.leaves(step, origin) {
-                        Verdict::Reject(0.5)
-                    } else {
-                        let here = Sizes {
-                            position: least.min(sizes.position),
-                            ..sizes
-                        };
-                        let error = step.error(&here, method.integrals);
-                        let ratio = error / method.control.tolerance;
-                        verdict(ratio, (step.nodes + 1) as f64, SLOW / step.contraction)
-                    }
-                }
-                Err(Diverged) => Verdict::Reject(0.5),
-            };
-            match (verdict, solved) {
-                (Verdict::Accept(factor), Ok(step)) => {
-                    // A step cut short says little about the next one.
-                    self.next_length = Some(if length == most && factor >= 1.0 {
-                        free.max(length * factor.min(2.0))
-                    } else {
-                        length * factor
-                    });
-                    return Ok(step);
-                }
-                (Verdict::Reject(factor) | Verdict::Accept(factor), _) => {
-                    length *= factor;
-                    free = free.min(length);
-                }
+            let step = solved.map_err(|Diverged| HALVED)?;
+            let ends = step.range.map(|position| local.size_of(position));
+            let least = ends[0].min(ends[1]);
+            if least < SHRINKING * sizes.position || self.leaves(&step, origin) {
+                return Err(HALVED);
             }
-        }
+            let here = Sizes {
+                position: least.min(sizes.position),
+                ..sizes
+            };
+            let ratio = step.error(&here, method.integrals) / control.tolerance;
+            let factor = judge(ratio, (step.nodes + 1) as f64, SLOW / step.contraction)?;
+            Ok((step, factor))
+        })?;
+        // A step cut short says little about the next one.
+        self.next_length = Some(if length == most && factor >= 1.0 {
+            free.max(length * factor.min(2.0))
+        } else {
+            length * factor
+        });
+        Ok(step)
     }
 
     /// Whether the nodes lie so far beyond the limits that the step says nothing.
@@ -224,7 +191,7 @@ impl Trajectory {
     ) -> f64 {
         let stage = start.stage();
         let load = local.load(0.0);
-        let (before, before_internal) = self.slopes_before.unwrap_or_default();
+        let (before, before_internal) = self.method.slopes_before.unwrap_or_default();
         let mut longest = f64::INFINITY;
         let mut limit = |slope: Slope, before: f64, size: f64| {
             let excursion = (slope.value - before).abs() / slope.relaxation;
@@ -241,43 +208,18 @@ impl Trajectory {
     }
 
     /// The slopes of the last step, where the next one goes on from it.
-    fn series_before(&self, fresh: bool) -> Option<Series> {
-        let piece = self.pieces.last().filter(|_| !fresh)?;
-        let series = piece.segment.series();
-        let size = series.half * series.half;
-        Some(Series {
-            half: series.half,
-            motion: std::array::from_fn(|k| {
-                let half = if k % 2 == 0 {
-                    &series.even
-                } else {
-                    &series.odd
-                };
-                half[k / 2] / size
-            }),
-            internal: self.rest.map(|rest| rest.slopes).unwrap_or_default(),
+    fn slopes_of_last_step(&self, fresh: bool) -> Option<Slopes> {
+        let step = self.history.steps().last().filter(|_| !fresh)?;
+        let half = 0.5 * step.segment.length();
+        Some(Slopes {
+            half,
+            motion: by_degree(&step.segment).map(|term| term / (half * half)),
+            internal: self
+                .method
+                .polynomials
+                .map(|own| own.slopes)
+                .unwrap_or_default(),
         })
-    }
-
-    /// Notes a turning point of the last piece; the second one closes the orbit.
-    fn look_for_turn(&mut self, rate_at_begin: f64) {
-        let Some(piece) = self.pieces.last_mut() else {
-            return;
-        };
-        if rate_at_begin * piece.segment.end().rate >= 0.0 {
-            return;
-        }
-        piece.segment.expand();
-        let length = piece.segment.length();
-        let offset = piece.segment.crossing(0.0, length, Segment::rate);
-        let turn = piece.begin.plus(offset);
-        match self.first_turn {
-            None => self.first_turn = Some(turn),
-            Some(first) if turn.since(first) > 0.0 => {
-                self.orbit = Some(Orbit::between(first, turn));
-            }
-            Some(_) => {}
-        }
     }
 }
 
@@ -291,10 +233,10 @@ fn stands<L: LocalCoupledEquation>(local: &L, start: &FullState, states: usize) 
 }
 
 /// x'' as the segment takes it.
-fn motion_series(step: &Step) -> MotionSeries<{ PAIRS }> {
-    let Series { half, motion, .. } = step.series;
+fn motion_series(step: &Step) -> Series<PAIRS> {
+    let Slopes { half, motion, .. } = step.series;
     let square = half * half;
-    MotionSeries {
+    Series {
         half,
         even: std::array::from_fn(|k| square * motion[2 * k]),
         odd: std::array::from_fn(|k| square * motion[2 * k + 1]),

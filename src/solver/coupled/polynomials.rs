@@ -12,7 +12,7 @@ pub(super) type Coefficients = [f64; TERMS];
 
 /// Everything but the motion, over one step, u = t/half − 1 ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Rest {
+pub(super) struct Polynomials {
     pub half: f64,
     pub start: FullState,
     pub end: FullState,
@@ -22,7 +22,7 @@ pub(super) struct Rest {
     pub powers: [Coefficients; MOST_INTEGRALS],
 }
 
-impl Rest {
+impl Polynomials {
     fn local(&self, offset: f64) -> f64 {
         (offset - self.half) / self.half
     }

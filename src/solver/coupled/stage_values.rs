@@ -4,7 +4,7 @@ use fearless_simd::{Simd, f64x8};
 use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
 
 use super::Slope;
-use super::piece::{Coefficients, TERMS, sum};
+use super::polynomials::{Coefficients, TERMS, sum};
 use super::rule::{Columns, Rule};
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
@@ -83,13 +83,13 @@ where
 
 /// One state over the step: its slopes at the nodes and what they add to it.
 #[derive(Clone, Copy)]
-pub(super) struct Course<S: Simd, const R: usize, const N: usize> {
+pub(super) struct StageValues<S: Simd, const R: usize, const N: usize> {
     pub slopes: [f64; N],
     pub gain: Row<S, R>,
     relaxes: bool,
 }
 
-impl<S: Simd, const R: usize, const N: usize> Course<S, R, N>
+impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N>
 where
     Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
 {
@@ -112,7 +112,7 @@ where
             None => [first.value; N],
         };
         let gain = product(simd, &rule.once, &slopes).map(|sum| sum * f64x8::fill(simd, half));
-        Course {
+        StageValues {
             slopes,
             gain,
             relaxes,

@@ -1,0 +1,134 @@
+//! The motion of a coupled system, followed by steps with dense output.
+
+use serde::{Deserialize, Serialize};
+
+use super::polynomials::Polynomials;
+use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
+use crate::solver::double::Double;
+use crate::solver::integrator::{History, Integrator, Mode};
+use crate::solver::limits::{Limit, Limits};
+pub use crate::solver::outcome::Failure;
+use crate::solver::outcome::Progress as PlainProgress;
+
+mod evaluation;
+mod events;
+mod extension;
+
+/// Why a motion stops before the time asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Event {
+    /// It has come to a limit of the position.
+    Limit(Limit),
+    /// The margin of the equation has vanished.
+    Margin,
+}
+
+/// How far an advance came.
+pub type Progress = PlainProgress<Event>;
+
+/// What a coupled system carries along beside position and rate.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Carried {
+    /// First-order states and integrals at the start.
+    internal: [f64; MOST_STATES],
+    integrals: [f64; MOST_INTEGRALS],
+    /// Both over the only step that is kept, where there are any.
+    polynomials: Option<Polynomials>,
+    /// x'' and z' just before the last restart: where they jump, fast transients begin.
+    slopes_before: Option<(f64, [f64; MOST_STATES])>,
+    /// Whether the margin of the equation is still awaited.
+    awaits_margin: bool,
+}
+
+/// A motion of a coupled system that is followed forward in time.
+pub type Trajectory = Integrator<Carried>;
+
+impl Trajectory {
+    /// A motion from `start` at `time`, followed with a relative `tolerance` of every state
+    /// between the `limits` of the position. The position is counted from 0.
+    #[must_use]
+    pub fn new(start: FullState, time: Double, limits: Limits, tolerance: f64) -> Trajectory {
+        Trajectory::within(History::empty(), start, time, limits, tolerance)
+    }
+
+    /// Makes it a new motion, see [`Trajectory::new`], in the memory of the one that it was.
+    pub fn begin_anew(&mut self, start: FullState, time: Double, limits: Limits, tolerance: f64) {
+        let history = self.history.take();
+        *self = Trajectory::within(history, start, time, limits, tolerance);
+    }
+
+    fn within(
+        history: History<Double>,
+        start: FullState,
+        time: Double,
+        limits: Limits,
+        tolerance: f64,
+    ) -> Trajectory {
+        let carried = Carried {
+            internal: start.internal,
+            integrals: start.integrals,
+            polynomials: None,
+            slopes_before: None,
+            awaits_margin: true,
+        };
+        Trajectory::with_method(history, carried, start.motion, time, limits, tolerance)
+    }
+
+    /// Goes on without awaiting the margin of the equation any more.
+    pub fn pass_margin(&mut self) {
+        self.method.awaits_margin = false;
+        if let Mode::Dense {
+            stop: Some((Event::Margin, _)),
+            ..
+        } = self.mode
+        {
+            // The step is cut at the present; what follows is looked at anew.
+            self.restart();
+        }
+    }
+
+    /// Starts anew from the present state: the equation has changed.
+    pub fn restart(&mut self) {
+        if !self.history.is_empty() {
+            self.method = Carried {
+                internal: self.internal(),
+                integrals: self.integrals(),
+                polynomials: None,
+                slopes_before: Some(self.slopes_at_present()),
+                ..self.method
+            };
+        }
+        self.start_from_present();
+    }
+
+    /// Adds to the integrals at once, and to the first-order states: a jump of an input.
+    /// To be called right after a restart.
+    pub fn jump(&mut self, states: &[f64; MOST_STATES], integrals: &[f64; MOST_INTEGRALS]) {
+        for (state, jump) in self.method.internal.iter_mut().zip(states) {
+            *state += jump;
+        }
+        for (integral, jump) in self.method.integrals.iter_mut().zip(integrals) {
+            *integral += jump;
+        }
+    }
+
+    /// Follows the motion for the time `step` > 0. The `equation` must be the same as in the calls
+    /// before, back to the last [`Trajectory::restart`].
+    ///
+    /// # Errors
+    /// [`Failure`] where the integration cannot go on; the trajectory then stands at the end of
+    /// the last step.
+    pub fn advance<E: CoupledEquation>(
+        &mut self,
+        equation: &E,
+        step: f64,
+    ) -> Result<Progress, Failure> {
+        if self.advance_inside_step(step) {
+            return Ok(Progress::Whole);
+        }
+        self.advance_by_steps(step, |motion, target, budget| {
+            *budget -= 1;
+            motion.extend(equation, target.since(motion.history.end()))
+        })
+    }
+}

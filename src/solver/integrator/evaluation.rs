@@ -1,0 +1,202 @@
+//! Where in the kept steps the present lies, and what the motion is there.
+
+use super::{Integrator, KeptStep, Method, Mode, PositionOrigin};
+use crate::solver::State;
+use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
+use crate::solver::orbit::Orbit;
+use crate::solver::segment::Segment;
+
+/// Where the present lies.
+pub enum Place<'a, O> {
+    /// At the start.
+    Start,
+    /// Inside a step, at this offset after its begin.
+    Inside(&'a KeptStep<O>, f64),
+    /// At the end of a step.
+    End(&'a KeptStep<O>),
+}
+
+impl<M: Method> Integrator<M> {
+    /// The present position, counted from 0.
+    #[must_use]
+    pub fn position(&self) -> f64 {
+        let (origin, position) = self.position_from_origin();
+        origin.absolute(position)
+    }
+
+    /// The present position, counted from the origin that is returned with it.
+    #[must_use]
+    pub fn position_from_origin(&self) -> (M::Origin, f64) {
+        match self.place() {
+            Place::Start => (self.position_origin, self.start.position),
+            Place::Inside(step, offset) => (step.origin, step.segment.position(offset)),
+            Place::End(step) => (step.origin, step.segment.end().position),
+        }
+    }
+
+    /// The present rate.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.mode.direction()
+            * match self.place() {
+                Place::Start => self.start.rate,
+                Place::Inside(step, offset) => step.segment.rate(offset),
+                Place::End(step) => step.segment.end().rate,
+            }
+    }
+
+    /// The present position, counted from 0, and rate.
+    #[must_use]
+    pub fn state(&self) -> State {
+        State {
+            position: self.position(),
+            rate: self.rate(),
+        }
+    }
+
+    pub(in crate::solver) fn place(&self) -> Place<'_, M::Origin> {
+        if self.history.is_empty() || self.now == Double::ZERO {
+            return Place::Start;
+        }
+        let step = &self.history.steps()[self.index];
+        let offset = self.now.since(step.begin);
+        if offset == step.segment.length() {
+            Place::End(step)
+        } else {
+            Place::Inside(step, offset)
+        }
+    }
+
+    /// Moves the present to `target`, which lies in one of the steps.
+    pub(in crate::solver) fn arrive(&mut self, target: Double) {
+        self.now = target;
+        if self.history.is_empty() {
+            // Not even the first step could be solved.
+            return;
+        }
+        self.index = self.history.find(target, self.index);
+        if self.extremes.is_some() {
+            self.record(target);
+        }
+        let step = &mut self.history.steps_mut()[self.index];
+        let offset = target.since(step.begin);
+        let ahead = step.segment.length() - offset;
+        self.time_left = 0.0;
+        // Where extremes are recorded every step is looked at.
+        if ahead == 0.0 || self.extremes.is_some() {
+            return;
+        }
+        step.segment.expand();
+        let room = match &self.mode {
+            Mode::Dense { stop: None, .. } => ahead,
+            Mode::Dense {
+                stop: Some((_, at)),
+                ..
+            } => ahead.min(at.since(target)),
+            Mode::Periodic { orbit, direction } => {
+                let room = if *direction > 0.0 { ahead } else { offset };
+                room.min(orbit.time_to_turn(target, *direction))
+            }
+            Mode::AtRest => 0.0,
+        };
+        // Less than all of it, since it is counted down with rounding.
+        self.time_left = room * (1.0 - 1e-9);
+    }
+
+    /// Moves the present along an orbit by the time `step`.
+    pub(super) fn run_orbit(&mut self, orbit: Orbit, direction: f64, step: f64) {
+        let (now, next_direction) = orbit.run(self.now, direction, step);
+        if self.extremes.is_some() {
+            for turn in orbit.turns_within(self.now, direction, step) {
+                self.arrive(turn);
+            }
+        }
+        self.mode = Mode::Periodic {
+            orbit,
+            direction: next_direction,
+        };
+        self.arrive(now);
+    }
+
+    /// Records the extremes of the motion up to `target`.
+    fn record(&mut self, target: Double) {
+        self.history.steps_mut()[self.index].segment.expand();
+        let Some(mut extremes) = self.extremes else {
+            return;
+        };
+        // Along an orbit the motion turns where the orbit does only.
+        let along_orbit = |orbit: Orbit| orbit.second_turn().since(self.recorded_until) <= 0.0;
+        if !self.mode.orbit().is_some_and(along_orbit) {
+            let first = self.history.find(self.recorded_until, 0);
+            let last = self.history.find(target, first);
+            for step in &mut self.history.steps_mut()[first..=last] {
+                step.segment.expand();
+                let from = self.recorded_until.since(step.begin).max(0.0);
+                let to = target.since(step.begin).min(step.segment.length());
+                for turn in step.segment.turns(from, to) {
+                    extremes.include(step.origin.absolute(turn));
+                }
+            }
+            self.recorded_until = target;
+        }
+        extremes.include(self.position());
+        self.extremes = Some(extremes);
+    }
+
+    /// Records the extremes of the motion from now on.
+    #[must_use]
+    pub fn recording_extremes(mut self) -> Self {
+        self.extremes = Some(Extremes::at(self.position()));
+        self
+    }
+
+    /// Forgets the extremes so far: they are recorded from the present on, or not any more.
+    pub fn record_extremes_anew(&mut self, recording: bool) {
+        self.extremes = recording.then(|| Extremes::at(self.position()));
+        // Along an orbit the motion turns where the orbit does only.
+        self.recorded_until = match self.mode.orbit() {
+            Some(orbit) => orbit.second_turn(),
+            None => self.now,
+        };
+        self.time_left = 0.0;
+    }
+
+    /// The extremes up to the present, where they are recorded.
+    #[must_use]
+    pub fn extremes(&self) -> Option<Extremes> {
+        self.extremes
+    }
+
+    /// Notes a turning point of the last step, if nothing stops there; the second one closes an
+    /// orbit.
+    pub(in crate::solver) fn look_for_turn(&mut self) {
+        let (
+            Mode::Dense {
+                first_turn,
+                stop: None,
+            },
+            Some(step),
+        ) = (&mut self.mode, self.history.steps_mut().last_mut())
+        else {
+            return;
+        };
+        let segment = &mut step.segment;
+        if segment.start().rate * segment.end().rate >= 0.0 {
+            return;
+        }
+        segment.expand();
+        let offset = segment.crossing(0.0, segment.length(), Segment::rate);
+        let turn = step.begin.plus(offset);
+        match *first_turn {
+            None => *first_turn = Some(turn),
+            Some(first) if turn.since(first) > 0.0 => {
+                self.mode = Mode::Periodic {
+                    orbit: Orbit::between(first, turn),
+                    direction: 1.0,
+                };
+            }
+            Some(_) => {}
+        }
+    }
+}

@@ -1,0 +1,439 @@
+//! A motion that is followed forward in time, whatever its equation: the clock, the steps that are
+//! kept, what the motion does in them, and the loop that takes further steps.
+//!
+//! What depends on the kind of equation is a [`Method`]: how the next step is solved, and what is
+//! carried along beside position and rate.
+
+use std::fmt::Debug;
+
+use fearless_simd::Level;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::State;
+use super::double::Double;
+use super::extremes::Extremes;
+use super::limits::{Limit, Limits};
+use super::orbit::Orbit;
+use super::outcome::{Failure, Progress};
+use super::segment::Segment;
+use super::step_control::StepControl;
+
+mod evaluation;
+mod history;
+mod validation;
+
+pub use evaluation::Place;
+pub use history::{History, KeptStep};
+
+/// Steps that one call may take: about a second of work.
+pub const MOST_STEPS: u32 = 2_000_000;
+
+/// What rounding may leave of a step that has been made.
+const LAST_BITS: f64 = 1e-18;
+
+/// Where positions are counted from.
+pub trait PositionOrigin: Copy + Debug + PartialEq + Serialize + DeserializeOwned {
+    /// The position 0.
+    const ZERO: Self;
+
+    /// A position counted from 0.
+    fn absolute(self, position: f64) -> f64;
+
+    /// A position counted from here.
+    fn relative(self, position: f64) -> f64;
+
+    /// Whether it is finite.
+    fn is_finite(&self) -> bool;
+}
+
+/// Always 0.
+impl PositionOrigin for () {
+    const ZERO: () = ();
+
+    #[inline(always)]
+    fn absolute(self, position: f64) -> f64 {
+        position
+    }
+
+    #[inline(always)]
+    fn relative(self, position: f64) -> f64 {
+        position
+    }
+
+    fn is_finite(&self) -> bool {
+        true
+    }
+}
+
+/// A number that no step changes much.
+impl PositionOrigin for Double {
+    const ZERO: Double = Double::ZERO;
+
+    fn absolute(self, position: f64) -> f64 {
+        self.plus(position).value()
+    }
+
+    fn relative(self, position: f64) -> f64 {
+        -self.plus(-position).value()
+    }
+
+    fn is_finite(&self) -> bool {
+        Double::is_finite(self)
+    }
+}
+
+/// How the steps of a kind of equation are solved, and what it carries along.
+pub trait Method: Copy + Debug + Serialize + DeserializeOwned {
+    /// Why a motion stops before the time asked for.
+    type Event: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
+    /// Where positions are counted from.
+    type Origin: PositionOrigin;
+
+    /// Whether its own numbers fit to those of the motion.
+    fn is_valid(&self, integrator: &Integrator<Self>) -> bool;
+}
+
+/// How a motion goes on from its start, as far as it is known.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub enum Mode<L> {
+    /// By steps, one after another.
+    Dense {
+        /// The first turning point, where an orbit is looked for.
+        first_turn: Option<Double>,
+        /// The first event, and its time.
+        stop: Option<(L, Double)>,
+    },
+    /// There and back between two turning points for ever: no further step is integrated.
+    Periodic {
+        /// The turning points.
+        orbit: Orbit,
+        /// −1 on the way back, else 1.
+        direction: f64,
+    },
+    /// Not at all.
+    AtRest,
+}
+
+impl<L> Mode<L> {
+    /// Nothing is known.
+    pub const UNKNOWN: Mode<L> = Mode::Dense {
+        first_turn: None,
+        stop: None,
+    };
+
+    /// The sign of the time's direction along the kept steps.
+    #[inline(always)]
+    fn direction(&self) -> f64 {
+        match self {
+            Mode::Periodic { direction, .. } => *direction,
+            Mode::Dense { .. } | Mode::AtRest => 1.0,
+        }
+    }
+
+    fn orbit(&self) -> Option<Orbit> {
+        match self {
+            Mode::Periodic { orbit, .. } => Some(*orbit),
+            Mode::Dense { .. } | Mode::AtRest => None,
+        }
+    }
+}
+
+/// A motion that is followed forward in time. It can be stored, and goes on bit for bit on
+/// processors of the same SIMD level; check what was stored with [`Integrator::is_valid`] where it
+/// may have been tampered with.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(bound = "M: Method")]
+pub struct Integrator<M: Method> {
+    #[serde(skip, default = "Level::new")]
+    pub(super) level: Level,
+    pub(super) control: StepControl,
+    pub(super) limits: Limits,
+    /// Present time of the model: all steps summed up.
+    pub(super) time: Double,
+    /// Time of the model at the start; of no meaning where no step is kept.
+    pub(super) time_origin: Double,
+    /// State at the origin of time, its position counted from the origin of the position.
+    pub(super) start: State,
+    pub(super) position_origin: M::Origin,
+    /// From the start on.
+    pub(super) history: History<M::Origin>,
+    /// The step in which the present lies.
+    pub(super) index: usize,
+    /// The present, counted from the origin of time; on an orbit folded into it.
+    pub(super) now: Double,
+    /// For less time than this the present stays in its step and meets nothing.
+    pub(super) time_left: f64,
+    pub(super) mode: Mode<M::Event>,
+    /// Length of the next step with dense output.
+    pub(super) next_length: Option<f64>,
+    /// Advances since the last restart.
+    pub(super) advances: u32,
+    /// The last start was good for a single advance: the host changes the equation at each
+    /// communication point, and a longer step would be thrown away.
+    pub(super) restarts_at_every_step: bool,
+    /// How far the motion has swung, where that is recorded.
+    extremes: Option<Extremes>,
+    /// The time up to which it is, counted from the origin of time.
+    recorded_until: Double,
+    pub(super) method: M,
+}
+
+impl<M: Method> Integrator<M> {
+    /// A motion with this method, which keeps its steps in the memory of an empty history.
+    pub(super) fn with_method(
+        history: History<M::Origin>,
+        method: M,
+        start: State,
+        time: Double,
+        limits: Limits,
+        tolerance: f64,
+    ) -> Self {
+        Integrator {
+            level: Level::new(),
+            control: StepControl::new(tolerance),
+            limits,
+            time,
+            time_origin: time,
+            start,
+            position_origin: M::Origin::ZERO,
+            history,
+            index: 0,
+            now: Double::ZERO,
+            time_left: 0.0,
+            mode: Mode::UNKNOWN,
+            next_length: None,
+            advances: 0,
+            restarts_at_every_step: false,
+            extremes: None,
+            recorded_until: Double::ZERO,
+            method,
+        }
+    }
+
+    /// Computes the motion with this set of processor instructions.
+    #[must_use]
+    pub fn with_level(mut self, level: Level) -> Self {
+        self.level = level;
+        self
+    }
+
+    /// The present time of the model.
+    #[must_use]
+    #[inline]
+    pub fn time(&self) -> &Double {
+        &self.time
+    }
+
+    /// Sets the clock, and moves nothing. Where the equation depends on time, a restart must
+    /// follow.
+    pub fn set_clock(&mut self, time: Double) {
+        self.time_origin = self.time_origin.add(time.sub(self.time));
+        self.time = time;
+    }
+
+    /// Lets time pass in which nothing moves.
+    #[inline]
+    pub fn wait(&mut self, time: Double) {
+        self.time = self.time.add(time);
+    }
+
+    pub(super) fn records_extremes(&self) -> bool {
+        self.extremes.is_some()
+    }
+
+    /// Starts anew from the present position and rate.
+    #[inline(always)]
+    pub(super) fn start_from_present(&mut self) {
+        self.restarts_at_every_step = self.advances == 1;
+        self.advances = 0;
+        // Without a step it stands at its start.
+        if !self.history.is_empty() {
+            let rate = self.rate();
+            let (origin, position) = self.position_from_origin();
+            self.start = State { position, rate };
+            self.position_origin = origin;
+        }
+        self.forget();
+    }
+
+    /// Forgets the motion so far, which has come to `state` at `time`.
+    pub(super) fn stand_at(&mut self, time: Double, state: State) {
+        self.start = state;
+        self.time_origin = time;
+        self.forget();
+    }
+
+    /// Forgets the motion that has led to its start.
+    #[inline(always)]
+    fn forget(&mut self) {
+        self.history.clear();
+        self.index = 0;
+        self.now = Double::ZERO;
+        self.recorded_until = Double::ZERO;
+        self.time_left = 0.0;
+        self.mode = Mode::UNKNOWN;
+    }
+
+    /// Follows the motion for the time `step` where it stays in its step and meets nothing; tells
+    /// whether it does.
+    #[inline(always)]
+    pub(super) fn advance_inside_step(&mut self, step: f64) -> bool {
+        self.advances = self.advances.saturating_add(1);
+        if step < self.time_left {
+            self.time_left -= step;
+            self.now = self.now.plus(self.mode.direction() * step);
+            self.time = self.time.plus(step);
+            return true;
+        }
+        false
+    }
+
+    /// Follows the motion for the time `step`, by steps from `further`: it takes one or more
+    /// toward the time that it is given, within the budget, and returns by how much it has moved
+    /// the origin of time, or the length of a step that was too short to go on.
+    ///
+    /// Out of the way of the steps for which the present step suffices, with its large frame.
+    #[inline(never)]
+    pub(super) fn advance_by_steps(
+        &mut self,
+        step: f64,
+        further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
+    ) -> Result<Progress<M::Event>, Failure> {
+        let progress = self.take_steps(step, further);
+        let passed = match progress {
+            Ok(Progress::Whole) => step,
+            Ok(Progress::Stopped { after, .. })
+            | Err(
+                Failure::SubstepTooShort { after, .. } | Failure::TooManySubsteps { after, .. },
+            ) => after,
+        };
+        self.time = self.time.plus(passed).tightened();
+        progress
+    }
+
+    #[inline(always)]
+    fn take_steps(
+        &mut self,
+        step: f64,
+        mut further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
+    ) -> Result<Progress<M::Event>, Failure> {
+        if self.history.is_empty() {
+            self.time_origin = self.time;
+        }
+        match self.mode {
+            Mode::Dense { .. } => {}
+            Mode::Periodic { orbit, direction } => {
+                self.run_orbit(orbit, direction, step);
+                return Ok(Progress::Whole);
+            }
+            Mode::AtRest => return Ok(Progress::Whole),
+        }
+        let mut target = self.now.plus(step);
+        let mut budget = MOST_STEPS;
+        loop {
+            if let Mode::Dense {
+                stop: Some((limit, at)),
+                ..
+            } = self.mode
+                && target.since(at) >= 0.0
+            {
+                let after = step - target.since(at);
+                self.arrive(at);
+                return Ok(Progress::Stopped { limit, after });
+            }
+            let end = self.history.end();
+            let rest = target.since(end);
+            if rest <= LAST_BITS * step {
+                // Without a kept step, endpoint-only steps came to it.
+                if !self.history.is_empty() {
+                    self.arrive(if rest > 0.0 { end } else { target });
+                }
+                return Ok(Progress::Whole);
+            }
+            let added = match budget {
+                0 => Err(None),
+                _ => further(self, target, &mut budget).map_err(Some),
+            };
+            match added {
+                Ok(shift) => target = target.sub(shift),
+                Err(too_short) => {
+                    // The present moves to the end of the last step.
+                    let end = self.history.end();
+                    self.arrive(end);
+                    let after = step - target.since(end);
+                    return Err(match too_short {
+                        Some(length) => Failure::SubstepTooShort { length, after },
+                        None => Failure::TooManySubsteps {
+                            most: MOST_STEPS,
+                            after,
+                        },
+                    });
+                }
+            }
+            match self.mode {
+                Mode::AtRest => return Ok(Progress::Whole),
+                _ if target == Double::ZERO => return Ok(Progress::Whole),
+                Mode::Periodic { orbit, direction } => {
+                    let rest = target.since(orbit.second_turn());
+                    if rest > 0.0 {
+                        self.arrive(orbit.second_turn());
+                        self.run_orbit(orbit, direction, rest);
+                        return Ok(Progress::Whole);
+                    }
+                }
+                Mode::Dense { .. } => {}
+            }
+        }
+    }
+
+    /// Adds a step to the history, from `state`, counted from `origin`, on. Where what has been
+    /// passed is not to be kept, it is forgotten and time is counted from the begin of the step:
+    /// returns by how much its origin has moved.
+    pub(super) fn push(&mut self, origin: M::Origin, segment: Segment, keeps: bool) -> Double {
+        let begin = self.history.end();
+        let mut shift = Double::ZERO;
+        if !keeps || self.history.is_full() {
+            if self.records_extremes() && !self.history.is_empty() {
+                self.arrive(begin);
+            }
+            shift = begin;
+            self.time_origin = self.time_origin.add(begin);
+            self.now = self.now.sub(begin);
+            self.recorded_until = self.recorded_until.sub(begin);
+            self.index = 0;
+            self.history.clear();
+            self.mode = Mode::UNKNOWN;
+        }
+        if self.history.is_empty() {
+            self.start = segment.start();
+            self.position_origin = origin;
+        }
+        self.history.push(KeptStep {
+            begin: begin.sub(shift),
+            origin,
+            segment,
+        });
+        shift
+    }
+
+    /// The limit that the motion first meets in the last step, and the offset at which it does.
+    /// `lowest` and `highest` hold the motion there.
+    pub(super) fn first_contact(&mut self, lowest: f64, highest: f64) -> Option<(Limit, f64)> {
+        let limits = self.limits;
+        let step = self.history.steps_mut().last_mut()?;
+        let limits = Limits {
+            lower: step.origin.relative(limits.lower),
+            upper: step.origin.relative(limits.upper),
+        };
+        limits.first_contact(&mut step.segment, lowest..=highest)
+    }
+
+    /// Notes that the motion stops at this offset after the begin of the last step.
+    pub(super) fn stop_in_last_step(&mut self, event: Option<(M::Event, f64)>) {
+        let begin = self.history.steps().last().map(|step| step.begin);
+        if let (Mode::Dense { stop, .. }, Some(begin)) = (&mut self.mode, begin) {
+            *stop = event.map(|(event, offset)| (event, begin.plus(offset)));
+        }
+    }
+}

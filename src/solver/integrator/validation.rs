@@ -1,0 +1,96 @@
+//! Whether numbers fit together as those of a motion that has been followed.
+
+use super::{Integrator, Method, Mode, PositionOrigin};
+use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
+use crate::solver::limits::Limits;
+use crate::solver::orbit::Orbit;
+use crate::solver::segment::ROUNDING;
+
+impl<M: Method> Integrator<M> {
+    /// Whether the numbers fit together: to be checked where they do not come from this process.
+    /// The steps join, the present lies in its step and between the limits, an orbit turns where it
+    /// says. Whether the steps solve an equation is not looked at.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let end = self.history.end();
+        let inside = |time: &Double| {
+            time.is_finite() && time.since(Double::ZERO) >= 0.0 && time.since(end) <= 0.0
+        };
+        let in_step =
+            |time: &Double| inside(time) && self.history.find(*time, self.index) == self.index;
+        let first = self.history.steps().first();
+        let length = self.next_length.unwrap_or(1.0);
+        let latest = self.latest_unseen();
+        self.control.is_valid()
+            && self.limits.are_valid()
+            && [self.time, self.time_origin].iter().all(Double::is_finite)
+            && self.position_origin.is_finite()
+            && self.start.position.is_finite()
+            && self.start.rate.is_finite()
+            && first.is_none_or(|step| {
+                step.segment.begins_in(self.start) && step.origin == self.position_origin
+            })
+            // No step outlives a restart: a short step, which may come first then, looks at none.
+            && (first.is_none() || self.advances > 0)
+            && self.index < self.history.steps().len().max(1)
+            && (0.0..=end.value()).contains(&self.time_left)
+            && [self.now, latest].iter().all(in_step)
+            && self.recorded_until.is_finite()
+            && (self.extremes.is_none() || inside(&self.recorded_until))
+            && match &self.mode {
+                Mode::Dense { first_turn, stop } => {
+                    first_turn.iter().all(inside)
+                        && stop.is_none_or(|(_, at)| inside(&at) && at.since(latest) >= 0.0)
+                }
+                Mode::Periodic { orbit, direction } => {
+                    direction.abs() == 1.0 && self.follows(orbit)
+                }
+                Mode::AtRest => first.is_none() && self.start.rate == 0.0,
+            }
+            && length > 0.0
+            && length.is_finite()
+            && self.is_between_limits()
+            && self.method.is_valid(self)
+    }
+
+    /// Whether it is followed between these limits, with this tolerance.
+    #[must_use]
+    pub fn keeps_to(&self, limits: Limits, tolerance: f64) -> bool {
+        self.limits == limits && self.control.tolerance == tolerance
+    }
+
+    /// Where the present comes to at the latest before it is looked where it is, but for rounding:
+    /// the time left is counted down step by step.
+    fn latest_unseen(&self) -> Double {
+        let left = (self.time_left - ROUNDING * self.history.end().value()).max(0.0);
+        self.now.plus(self.mode.direction() * left)
+    }
+
+    /// Whether the motion turns at the ends of the orbit, and is on it.
+    fn follows(&self, orbit: &Orbit) -> bool {
+        let turns_at = |time: &Double| {
+            let steps = self.history.steps();
+            let step = steps.get(self.history.find(*time, 0));
+            step.is_some_and(|step| step.segment.turns_at(time.since(step.begin)))
+        };
+        let turns = orbit.turns();
+        turns[0].since(Double::ZERO) >= 0.0
+            && turns[1].since(self.history.end()) <= 0.0
+            && orbit.is_valid()
+            && [self.now, self.latest_unseen()]
+                .iter()
+                .all(|time| orbit.holds(*time))
+            && turns.iter().all(turns_at)
+    }
+
+    /// Whether the present, and what is recorded, lie between the limits.
+    fn is_between_limits(&self) -> bool {
+        let Limits { lower, upper } = self.limits;
+        let range = lower - ROUNDING * lower.abs()..=upper + ROUNDING * upper.abs();
+        let recorded = self.extremes.is_none_or(|Extremes { lowest, highest }| {
+            lowest <= highest && range.contains(&lowest) && range.contains(&highest)
+        });
+        recorded && range.contains(&self.position()) && self.rate().is_finite()
+    }
+}
