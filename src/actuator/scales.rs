@@ -23,122 +23,151 @@ use super::device::{
     Branch, Breakdown, Damping, Device, Elasticity, Locking, Permittivity, Port, Source, Spring,
 };
 use crate::solver::double::Double;
+use crate::solver::jet::Dual;
+use crate::solver::number::{Number, Parameter};
 
 /// ε0 in F/m (CODATA 2022).
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;
 
 /// A real actuator in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SiDevice {
+pub struct SiDevice<P = f64> {
     /// µ in Pa, the shear modulus (2·C10 of a Yeoh material).
-    pub shear_modulus: f64,
+    pub shear_modulus: P,
     /// ρ in kg/m³.
-    pub density: f64,
+    pub density: P,
     /// ε/ε0 at λ = 1.
-    pub relative_permittivity: f64,
+    pub relative_permittivity: P,
     /// H in m, the thickness of a layer.
-    pub thickness: f64,
+    pub thickness: P,
     /// L in m, the side of the sheet.
-    pub side: f64,
+    pub side: P,
     /// n, the number of layers.
-    pub layers: f64,
+    pub layers: P,
     /// Surface energy in N/m.
-    pub surface_energy: f64,
+    pub surface_energy: P,
     /// Surface tension in N/m.
-    pub surface_tension: f64,
+    pub surface_tension: P,
     /// Surface elasticity in N/m.
-    pub surface_elasticity: f64,
+    pub surface_elasticity: P,
     /// The number of surfaces that carry surface energy; 2, the outer faces, in the paper.
-    pub surfaces: f64,
+    pub surfaces: P,
     /// The law of its elastic stiffness, nondimensional.
-    pub elasticity: SiElasticity,
+    pub elasticity: SiElasticity<P>,
     /// m in kg, the reduced mass of what sits on opposite edges, in each direction.
-    pub load_mass: f64,
+    pub load_mass: P,
     /// k in N/m, a spring between opposite edges, in each direction.
-    pub load_spring: f64,
+    pub load_spring: P,
     /// The length in m at which the spring is relaxed.
-    pub load_spring_length: f64,
+    pub load_spring_length: P,
     /// k1, k2, k3 of the permittivity, nondimensional.
-    pub permittivity_terms: [f64; 3],
+    pub permittivity_terms: [P; 3],
     /// b in N s/m, a dashpot between opposite edges, in each direction.
-    pub linear_damping: f64,
+    pub linear_damping: P,
     /// η in Pa s, Kelvin–Voigt.
-    pub viscosity: f64,
+    pub viscosity: P,
     /// The moduli µ_k of the Maxwell branches in Pa; 0 for none.
-    pub branch_moduli: [f64; MOST_BRANCHES],
+    pub branch_moduli: [P; MOST_BRANCHES],
     /// Their relaxation times in s.
-    pub branch_times: [f64; MOST_BRANCHES],
+    pub branch_times: [P; MOST_BRANCHES],
     /// The limits J of their Gent springs; infinite for neo-Hookean ones.
-    pub branch_limits: [f64; MOST_BRANCHES],
+    pub branch_limits: [P; MOST_BRANCHES],
     /// What the source imposes.
     pub source: Source,
     /// R_s in Ω, in series; 0 for an ideal source.
-    pub series_resistance: f64,
+    pub series_resistance: P,
     /// G_p in S, a fixed conductance in parallel.
-    pub parallel_conductance: f64,
+    pub parallel_conductance: P,
     /// σ in S/m, the conductivity of the material at a weak field.
-    pub conductivity: f64,
+    pub conductivity: P,
     /// The field in V/m over which the conductivity grows by e; infinite for none.
-    pub conduction_field: f64,
+    pub conduction_field: P,
     /// The true breakdown field in V/m at λ = 1; infinite for none.
-    pub breakdown_field: f64,
+    pub breakdown_field: P,
     /// n of E_b λⁿ.
-    pub breakdown_exponent: f64,
+    pub breakdown_exponent: P,
 }
 
 /// The law of the elastic stiffness by its nondimensional constants.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum SiElasticity {
+pub enum SiElasticity<P = f64> {
     /// No stiffening.
     NeoHookean,
     /// Gent with the limit J.
     Gent {
         /// J.
-        limit: f64,
+        limit: P,
     },
     /// Yeoh with κ_j = C_j0/C10.
     Yeoh {
         /// κ2.
-        second: f64,
+        second: P,
         /// κ3.
-        third: f64,
+        third: P,
     },
 }
 
 /// The units of the nondimensional numbers, in SI units.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Scales {
+pub struct Scales<P = f64> {
     /// t0 in s.
-    pub time: Double,
+    pub time: P,
+    /// Its value in double length.
+    pub exact_time: Double,
     /// V0 in V.
-    pub voltage: f64,
+    pub voltage: P,
     /// Q0 in C.
-    pub charge: f64,
+    pub charge: P,
     /// E0 in J.
-    pub energy: f64,
+    pub energy: P,
     /// P0 in N.
-    pub force: f64,
+    pub force: P,
     /// C0 in F.
-    pub capacitance: f64,
+    pub capacitance: P,
     /// L in m.
-    pub length: f64,
+    pub length: P,
     /// V0/H in V/m.
-    pub field: f64,
+    pub field: P,
 }
 
 impl Scales {
     /// The scales of an actuator.
     #[must_use]
     pub fn of(device: &SiDevice) -> Scales {
-        let permittivity = device.relative_permittivity * VACUUM_PERMITTIVITY;
+        let ratio = Double::new(device.density).div(Double::new(device.shear_modulus).scale(12.0));
+        let exact_time = ratio
+            .sqrt()
+            .mul(Double::new(device.layers).scale(device.thickness));
+        Scales::in_time(device, exact_time.value(), exact_time)
+    }
+
+    /// A time in s, kept as a double-length sum, as a nondimensional one. Divided once, no
+    /// rounding adds up from step to step.
+    #[must_use]
+    pub fn time(&self, seconds: Double) -> Double {
+        seconds.div(self.exact_time)
+    }
+}
+
+impl Scales<Dual> {
+    /// The scales of an actuator that changes in a direction.
+    #[must_use]
+    pub fn along(device: &SiDevice<Dual>) -> Scales<Dual> {
+        let ratio = device.density / (Dual::constant(12.0) * device.shear_modulus);
+        let time = ratio.sqrt() * device.layers * device.thickness;
+        Scales::in_time(device, time, Double::new(time.value()))
+    }
+}
+
+impl<P: Parameter> Scales<P> {
+    fn in_time(device: &SiDevice<P>, time: P, exact_time: Double) -> Scales<P> {
         let (mu, side) = (device.shear_modulus, device.side);
+        let permittivity = device.relative_permittivity * mu.same(VACUUM_PERMITTIVITY);
         let stack = device.layers * device.thickness;
         let field = (mu / permittivity).sqrt();
-        let ratio = Double::new(device.density).div(Double::new(mu).scale(12.0));
         Scales {
-            time: ratio
-                .sqrt()
-                .mul(Double::new(device.layers).scale(device.thickness)),
+            time,
+            exact_time,
             voltage: device.thickness * field,
             charge: device.layers * side * side * (permittivity * mu).sqrt(),
             energy: mu * side * side * stack,
@@ -151,32 +180,25 @@ impl Scales {
 
     /// The unit of the current in A.
     #[must_use]
-    pub fn current(&self) -> f64 {
-        self.charge / self.time.value()
+    pub fn current(&self) -> P {
+        self.charge / self.time
     }
 
     /// The unit of power in W.
     #[must_use]
-    pub fn power(&self) -> f64 {
-        self.energy / self.time.value()
+    pub fn power(&self) -> P {
+        self.energy / self.time
     }
 
     /// The unit of resistance in Ω.
     #[must_use]
-    pub fn resistance(&self) -> f64 {
-        self.time.value() / self.capacitance
-    }
-
-    /// A time in s, kept as a double-length sum, as a nondimensional one. Divided once, no
-    /// rounding adds up from step to step.
-    #[must_use]
-    pub fn time(&self, seconds: Double) -> Double {
-        seconds.div(self.time)
+    pub fn resistance(&self) -> P {
+        self.time / self.capacitance
     }
 
     /// The unit of what the source imposes.
     #[must_use]
-    pub fn source(&self, source: Source) -> f64 {
+    pub fn source(&self, source: Source) -> P {
         match source {
             Source::Voltage => self.voltage,
             Source::Current => self.current(),
@@ -228,24 +250,62 @@ impl SiDevice {
     /// This actuator in nondimensional numbers.
     #[must_use]
     pub fn nondimensional(&self) -> Device {
-        let scales = Scales::of(self);
+        self.in_scales(&Scales::of(self), Locking::new)
+    }
+
+    /// This actuator as it changes in a direction, whose numbers are the rates of change of those
+    /// in their places.
+    #[must_use]
+    pub fn along(&self, change: &SiDevice) -> SiDevice<Dual> {
+        macro_rules! dual {
+            ($($name:ident),*; $($list:ident),*) => {
+                SiDevice {
+                    elasticity: SiElasticity::NeoHookean,
+                    source: self.source,
+                    $($name: Dual::new(self.$name, change.$name),)*
+                    $($list: std::array::from_fn(|k| Dual::new(self.$list[k], change.$list[k])),)*
+                }
+            };
+        }
+        dual!(
+            shear_modulus, density, relative_permittivity, thickness, side, layers,
+            surface_energy, surface_tension, surface_elasticity, surfaces, load_mass, load_spring,
+            load_spring_length, linear_damping, viscosity, series_resistance,
+            parallel_conductance, conductivity, conduction_field, breakdown_field,
+            breakdown_exponent;
+            permittivity_terms, branch_moduli, branch_times, branch_limits
+        )
+    }
+}
+
+impl SiDevice<Dual> {
+    /// [`SiDevice::nondimensional`] of an actuator that changes in a direction.
+    #[must_use]
+    pub fn nondimensional_along(&self) -> Device<Dual> {
+        self.in_scales(&Scales::along(self), Locking::along)
+    }
+}
+
+impl<P: Parameter> SiDevice<P> {
+    fn in_scales(&self, scales: &Scales<P>, locking: fn(P) -> Locking<P>) -> Device<P> {
+        let number = |value: f64| self.side.same(value);
         let stack = self.layers * self.thickness;
-        let time = scales.time.value();
+        let time = scales.time;
         let shear = self.shear_modulus * stack;
-        let surface = self.surfaces / (2.0 * shear);
-        let permittivity = self.relative_permittivity * VACUUM_PERMITTIVITY;
+        let surface = self.surfaces / (number(2.0) * shear);
+        let permittivity = self.relative_permittivity * number(VACUUM_PERMITTIVITY);
         let slenderness = self.side / stack;
         Device {
             sheet: Parameters {
                 aspect: slenderness * slenderness
-                    + 12.0 * self.load_mass / (self.density * stack * stack * stack),
+                    + number(12.0) * self.load_mass / (self.density * stack * stack * stack),
                 surface_energy: self.surface_energy * surface,
                 surface_tension: self.surface_tension * surface,
                 surface_elasticity: self.surface_elasticity * surface,
             },
             elasticity: match self.elasticity {
                 SiElasticity::NeoHookean => Elasticity::NeoHookean,
-                SiElasticity::Gent { limit } => Elasticity::Gent(Locking::new(limit)),
+                SiElasticity::Gent { limit } => Elasticity::Gent(locking(limit)),
                 SiElasticity::Yeoh { second, third } => Elasticity::Yeoh { second, third },
             },
             spring: Spring {
@@ -271,7 +331,7 @@ impl SiDevice {
                 conductivity: self.conductivity * time / permittivity,
                 conduction_field: self.conduction_field / scales.field,
             },
-            breakdown: self.breakdown_field.is_finite().then(|| Breakdown {
+            breakdown: self.breakdown_field.value().is_finite().then(|| Breakdown {
                 field: self.breakdown_field / scales.field,
                 exponent: self.breakdown_exponent,
             }),

@@ -159,7 +159,7 @@ impl SiAccount {
     fn integrate(&mut self, scene: &SiScene, time: Double, state: &SiState) {
         const NODE: f64 = 0.387_298_334_620_741_7; // √15/10
         let mut basis = Basis::of(scene, &self.time, Double::ZERO);
-        let span = time.since(self.time) / basis.scales.time.value();
+        let span = time.since(self.time) / basis.scales.time;
         let (before, now) = (self.inputs, Inputs::of(scene, time));
         let line = |from: f64, to: f64, unit: f64| {
             let mut line = Polynomial::constant(from / unit);

@@ -1,129 +1,89 @@
-//! The quantities as they change in a direction.
+//! The quantities as they change in a direction, by the same formulas in dual numbers.
 
 use super::Si;
 use super::sample::{Basis, Sample, own};
-use super::scene::{BRANCHES, SiScene, SiState, place};
+use super::scene::{BRANCHES, SiScene, described, internal, place};
+use crate::actuator::device::Source;
 use crate::actuator::device::equation::Load;
-use crate::model::variables::{Access, Kind};
-use crate::model::{Direction, Model, Place, View};
-use crate::solver::coupled::{MOST_STATES, Stage};
+use crate::actuator::scales::Scales;
+use crate::model::{Direction, View};
+use crate::solver::coupled::Stage;
 use crate::solver::jet::Dual;
+use crate::solver::number::Number;
 
 impl View<'_, Si> {
-    /// The present as it changes in a direction: exact for inputs and states; for parameters, on
-    /// which the units depend too, by central differences of fourth order.
+    /// The present as it changes in a direction, exact to rounding. What is given as 0 for "none"
+    /// stays so.
     pub(super) fn sample_along(&self, direction: &Direction<Si>) -> Sample<Dual> {
         let (basis, stage) = self.basis();
-        let scales = &basis.scales;
-        let source = self.scene.source();
-        let change = direction.scene.sources[place(source)];
-        let dual = |value: f64, slope: f64| Dual::new(value, slope);
-        let load = basis.load(0.0);
-        let time = scales.time.value();
-        let unit = scales.source(source);
-        let loaded = Load {
-            source: dual(load.source, change.at(0.0) / unit),
-            prestress: dual(load.prestress, direction.scene.force.at(0.0) / scales.force),
+        let (scene, change) = (self.scene, &direction.scene);
+        let stiffening =
+            std::array::from_fn(|k| Dual::new(scene.stiffening[k], change.stiffening[k]));
+        let device = scene.device.along(&change.device);
+        let described = described(device, scene.source(), stiffening);
+        let basis = Basis {
+            device: described.nondimensional_along(),
+            scales: Scales::along(&described),
+            described,
+            drive: basis.drive,
+            time: basis.time,
+            origin: basis.origin,
         };
-        let slopes = self.state_slopes(&basis, &direction.state);
         let held = self.is_held();
+        let moving = if held { 0.0 } else { 1.0 };
+        let (state, changed) = (self.state(), &direction.state);
+        let [now, slopes] = [own(&state), own(changed)];
+        let own: [Dual; 1 + BRANCHES] = std::array::from_fn(|k| Dual::new(now[k], slopes[k]));
+        let rate = Dual::new(state.motion.rate, moving * changed.motion.rate);
+        let [charge, dashpots @ ..] = own;
         let moved = Stage {
-            position: dual(
-                stage.position,
-                if held {
-                    0.0
-                } else {
-                    direction.state.motion.position
-                },
-            ),
-            rate: dual(
-                stage.rate,
-                if held {
-                    0.0
-                } else {
-                    direction.state.motion.rate * time
-                },
-            ),
-            internal: std::array::from_fn(|k| dual(stage.internal[k], slopes[k])),
+            position: Dual::new(stage.position, moving * changed.motion.position),
+            rate: rate * basis.scales.time,
+            internal: internal(&basis.device, charge / basis.scales.charge, &dashpots),
         };
-        let rate = Dual::constant(basis.source_rate());
-        let [now, change] = [own(&self.state()), own(&direction.state)];
-        let states = std::array::from_fn(|k| dual(now[k], change[k]));
-        let sample = basis.sample(loaded, rate, &moved, None, (held, states));
-        match self.by_parameters(direction) {
-            Some(slope) => sample.plus(&slope),
-            None => sample,
-        }
-    }
-
-    /// The changes of the nondimensional first-order states.
-    fn state_slopes(&self, basis: &Basis, change: &SiState) -> [f64; MOST_STATES] {
-        let state = self.state();
-        let mut all = [0.0; MOST_STATES];
-        let mut next = 0;
-        if basis.device.has_charge_state() {
-            all[0] = change.charge / basis.scales.charge;
-            next = 1;
-        }
-        for k in 0..BRANCHES {
-            if basis.device.branches[k].modulus > 0.0 {
-                all[next] = 2.0 * state.dashpots[k] * change.dashpots[k];
-                next += 1;
-            }
-        }
-        all
-    }
-
-    /// How the quantities change with the parameters of a direction, if it has any.
-    fn by_parameters(&self, direction: &Direction<Si>) -> Option<Sample<f64>> {
-        let mut size = 0.0_f64;
-        for (get, _) in numbers() {
-            let change = get(&direction.scene);
-            if change != 0.0 {
-                let value = get(self.scene).abs();
-                size = size.max(change.abs() / if value > 0.0 { value } else { 1.0 });
-            }
-        }
-        if size == 0.0 {
-            return None;
-        }
-        let step = 1e-3 / size;
-        let state = self.state();
-        let at = |steps: f64| {
-            let mut scene = self.scene.clone();
-            for (get, set) in numbers() {
-                let change = get(&direction.scene);
-                if change != 0.0 {
-                    let value = get(&scene) + steps * step * change;
-                    set(&mut scene, value);
-                }
-            }
-            View::<Si> {
-                scene: &scene,
-                place: Place::of_state(*self.time, state),
-                ..*self
-            }
-            .sample()
+        // Where nothing alternates at present, its amplitude may change from 0.
+        let angle = basis
+            .drive
+            .at(&basis.time)
+            .harmonic()
+            .map(|[_, angle]| angle);
+        let [source, source_rate] = self.source_along(change, angle);
+        let unit = basis.scales.source(scene.source());
+        let offset = self.time.since(scene.since);
+        let load = Load {
+            source: source / unit,
+            prestress: Dual::new(scene.force.at(offset), change.force.at(0.0)) / basis.scales.force,
         };
-        let weight = |part: f64| part / (12.0 * step);
-        Some(Sample::sum([
-            (weight(1.0), at(-2.0)),
-            (weight(-8.0), at(-1.0)),
-            (weight(8.0), at(1.0)),
-            (weight(-1.0), at(2.0)),
-        ]))
+        let rate = source_rate * basis.scales.time / unit;
+        basis.sample(load, rate, &moved, None, (held, own))
     }
-}
 
-/// How a number that a host sets is read and set.
-type Setting = (fn(&SiScene) -> f64, fn(&mut SiScene, f64));
+    /// What the source imposes, in its unit, and its rate per second.
+    fn source_along(&self, change: &SiScene, angle: Option<f64>) -> [Dual; 2] {
+        let scene = self.scene;
+        let source = scene.source();
+        let offset = self.time.since(scene.since);
+        let input = scene.source_input();
+        let value = Dual::new(input.at(offset), change.sources[place(source)].at(0.0));
+        let rate = Dual::constant(input.at(Dual::new(offset, 1.0)).slope());
+        if source != Source::Voltage {
+            return [value, rate];
+        }
+        let amplitude = Dual::new(scene.alternating[0], change.alternating[0]);
+        let [sine, slope] = self.oscillation(change, angle);
+        [value + amplitude * sine, rate + amplitude * slope]
+    }
 
-/// How the numbers that a host sets are read and set.
-fn numbers() -> impl Iterator<Item = Setting> {
-    Si::VARIABLES
-        .iter()
-        .filter_map(|variable| match (variable.access, variable.kind) {
-            (Access::Setting { get, set, .. }, Kind::Real { .. }) => Some((get, set) as Setting),
-            _ => None,
-        })
+    /// The sine of the built-in voltage, and its rate per second, where its angle is this.
+    fn oscillation(&self, change: &SiScene, angle: Option<f64>) -> [Dual; 2] {
+        let [_, frequency, phase] = self.scene.alternating;
+        let turn = std::f64::consts::TAU;
+        let angle = Dual::new(
+            angle.unwrap_or(turn * frequency * self.time.value() + phase + self.scene.lead),
+            turn * change.alternating[1] * self.time.value() + change.alternating[2],
+        );
+        let quarter = Dual::constant(0.25 * turn);
+        let speed = Dual::new(turn * frequency, turn * change.alternating[1]);
+        [angle.sin(), speed * (angle + quarter).sin()]
+    }
 }

@@ -174,7 +174,7 @@ fn full_state(motion: &DeviceMotion, scales: &Scales, state: &SiState) -> FullSt
         ),
         ..FullState::of(State {
             position: state.motion.position,
-            rate: state.motion.rate * scales.time.value(),
+            rate: state.motion.rate * scales.time,
         })
     }
 }

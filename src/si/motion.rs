@@ -68,7 +68,7 @@ impl SiMotion {
         SiState {
             motion: State {
                 position,
-                rate: rate / self.scales.time.value(),
+                rate: rate / self.scales.time,
             },
             charge,
             dashpots,
@@ -196,7 +196,7 @@ impl Motion<Si> for SiMotion {
         if self.stale {
             self.refold(scene);
         }
-        let (begin, second) = (self.clock, self.scales.time.value());
+        let (begin, second) = (self.clock, self.scales.time);
         let target = begin.plus(step).tightened();
         let end = self.scales.time(target);
         loop {
@@ -278,6 +278,7 @@ impl Motion<Si> for SiMotion {
         let positive = |number: f64| number > 0.0 && number.is_finite();
         let Scales {
             time,
+            exact_time,
             voltage,
             charge,
             energy,
@@ -291,7 +292,8 @@ impl Motion<Si> for SiMotion {
             && self.clock.is_finite()
             && self.motion.is_plain() == self.course.is_plain()
             && [
-                time.value(),
+                time,
+                exact_time.value(),
                 voltage,
                 charge,
                 energy,

@@ -10,7 +10,7 @@ use crate::model::View;
 use crate::solver::coupled::Stage;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
-use crate::solver::number::Number;
+use crate::solver::number::{Number, Parameter, ParameterOf};
 
 macro_rules! sample {
     ($($(#[$about:meta])* $name:ident,)*) => {
@@ -34,20 +34,6 @@ macro_rules! sample {
             pub fn $name(&self) -> f64 {
                 self.sample().$name
             })*
-        }
-
-        impl Sample<f64> {
-            /// Σ weight · sample.
-            pub(super) fn sum(parts: [(f64, Sample<f64>); 4]) -> Sample<f64> {
-                Sample { $($name: parts.iter().map(|(weight, part)| weight * part.$name).sum(),)* }
-            }
-        }
-
-        impl Sample<Dual> {
-            /// The sample with further slopes.
-            pub(super) fn plus(&self, slope: &Sample<f64>) -> Sample<Dual> {
-                Sample { $($name: self.$name + Dual::new(0.0, slope.$name),)* }
-            }
         }
     };
 }
@@ -108,10 +94,10 @@ sample! {
 }
 
 /// What a sample is computed with.
-pub(super) struct Basis {
-    pub described: SiDevice,
-    pub device: Device,
-    pub scales: Scales,
+pub(super) struct Basis<P = f64> {
+    pub described: SiDevice<P>,
+    pub device: Device<P>,
+    pub scales: Scales<P>,
     pub drive: crate::actuator::Drive,
     /// Time of the model, nondimensional.
     pub time: Double,
@@ -133,10 +119,6 @@ impl Basis {
         }
     }
 
-    pub fn local(&self) -> LocalDevice<'_> {
-        LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
-    }
-
     /// The nondimensional capacitance in a state.
     pub fn capacitance(&self, state: &SiState) -> f64 {
         self.local().capacitance(state.motion.position)
@@ -146,13 +128,29 @@ impl Basis {
     pub fn stage(&self, state: &SiState, position: f64) -> Stage {
         Stage {
             position,
-            rate: state.motion.rate * self.scales.time.value(),
+            rate: state.motion.rate * self.scales.time,
             internal: internal(
                 &self.device,
                 state.charge / self.scales.charge,
                 &state.dashpots,
             ),
         }
+    }
+
+    pub fn load<N: Number>(&self, offset: N) -> Load<N> {
+        use crate::solver::coupled::LocalCoupledEquation;
+        self.local().load(offset)
+    }
+
+    pub fn source_rate(&self) -> f64 {
+        let drive = self.drive.at(&self.time);
+        drive.voltage(Dual::new(0.0, 1.0)).slope()
+    }
+}
+
+impl<P: Parameter> Basis<P> {
+    pub fn local(&self) -> LocalDevice<'_, P> {
+        LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
     }
 
     /// The sample at a stage. `source_rate` is the derivative of what the source imposes;
@@ -165,10 +163,14 @@ impl Basis {
         stage: &Stage<N>,
         charging: Option<N>,
         (held, mut states): (bool, [N; 1 + BRANCHES]),
-    ) -> Sample<N> {
+    ) -> Sample<N>
+    where
+        P: ParameterOf<N>,
+    {
         let (device, scales, local) = (&self.device, &self.scales, self.local());
         let number = |value: f64| stage.position.same(value);
-        let per_second = number(1.0 / scales.time.value());
+        let lift = |parameter: P| parameter.lift(stage.position);
+        let per_second = number(1.0) / lift(scales.time);
         let stretch = local.stretch(stage.position);
         let [force, inertia, damping] = local.forces(&load, stage);
         let acceleration = if held {
@@ -194,20 +196,20 @@ impl Basis {
         };
         let supply = match device.port.source {
             Source::Voltage => load.source,
-            _ => voltage + number(device.port.resistance) * current,
+            _ => voltage + lift(device.port.resistance) * current,
         };
         let one = number(1.0);
-        let side = number(scales.length);
+        let side = lift(scales.length);
         let stack = self.described.layers * self.described.thickness;
         let rate = stage.rate * per_second;
         let zero = number(0.0);
         let mut rates = [zero; BRANCHES];
         let mut next = usize::from(has_charge);
         if has_charge {
-            states[0] = stage.internal[0] * number(scales.charge);
+            states[0] = stage.internal[0] * lift(scales.charge);
         }
         for (k, branch) in device.branches.iter().enumerate() {
-            if branch.modulus > 0.0 {
+            if branch.modulus.value() > 0.0 {
                 // ξ = √g.
                 let root = stage.internal[next].sqrt();
                 states[1 + k] = root;
@@ -217,8 +219,8 @@ impl Basis {
                 next += 1;
             }
         }
-        let current_unit = number(scales.current());
-        let volts = number(scales.voltage);
+        let current_unit = lift(scales.current());
+        let volts = lift(scales.voltage);
         let supply_current = current * current_unit;
         Sample {
             stretch,
@@ -230,15 +232,15 @@ impl Basis {
             edge_displacement: (stretch - one) * side,
             edge_velocity: rate * side,
             edge_acceleration: acceleration * per_second * per_second * side,
-            thickness: number(stack) / square,
-            charge: voltage * capacitance * number(scales.charge),
+            thickness: lift(stack) / square,
+            charge: voltage * capacitance * lift(scales.charge),
             supply_current,
-            capacitance: capacitance * number(scales.capacitance),
+            capacitance: capacitance * lift(scales.capacitance),
             membrane_voltage: voltage * volts,
             supply_voltage: supply * volts,
-            electric_field: voltage * square * number(scales.field),
+            electric_field: voltage * square * lift(scales.field),
             electrical_power: supply * volts * supply_current,
-            mechanical_power: number(2.0 * scales.force) * load.prestress * rate * side,
+            mechanical_power: number(2.0) * lift(scales.force) * load.prestress * rate * side,
             charge_state_rate: if has_charge && !held {
                 charge_slope * current_unit
             } else {
@@ -252,16 +254,6 @@ impl Basis {
             dashpot_2_rate: rates[1],
             dashpot_3_rate: rates[2],
         }
-    }
-
-    pub fn load<N: Number>(&self, offset: N) -> Load<N> {
-        use crate::solver::coupled::LocalCoupledEquation;
-        self.local().load(offset)
-    }
-
-    pub fn source_rate(&self) -> f64 {
-        let drive = self.drive.at(&self.time);
-        drive.voltage(Dual::new(0.0, 1.0)).slope()
     }
 }
 
@@ -309,7 +301,7 @@ impl View<'_, Si> {
         for k in 1..source_rate.term.len() {
             source_rate.term[k - 1] = k as f64 * load.source.term[k];
         }
-        let per_second = 1.0 / basis.scales.time.value();
+        let per_second = 1.0 / basis.scales.time;
         let in_seconds = |series: TimeSeries| {
             let mut factor = 1.0;
             let mut scaled = series;

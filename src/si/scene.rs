@@ -6,12 +6,14 @@ use super::thresholds::Thresholds;
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial};
-use crate::actuator::scales::{Scales, SiDevice};
+use crate::actuator::scales::{Scales, SiDevice, SiElasticity};
 use crate::model::AtLimit;
 use crate::solver::State;
+use crate::solver::coupled::MOST_STATES;
 use crate::solver::double::Double;
 use crate::solver::jet::Jet;
 use crate::solver::limits::Limits;
+use crate::solver::number::Parameter;
 
 /// Maxwell branches.
 pub const BRANCHES: usize = crate::actuator::device::parameters::MOST_BRANCHES;
@@ -180,25 +182,7 @@ impl SiScene {
     /// The actuator as it is described, what is given as 0 for "none" left out.
     #[must_use]
     pub fn described(&self) -> SiDevice {
-        use crate::actuator::scales::SiElasticity;
-        let [limit, second, third] = self.stiffening;
-        let none = |value: f64| if value > 0.0 { value } else { f64::INFINITY };
-        let mut device = self.device;
-        device.source = self.source();
-        device.elasticity = if limit > 0.0 {
-            SiElasticity::Gent { limit }
-        } else if second != 0.0 || third != 0.0 {
-            SiElasticity::Yeoh { second, third }
-        } else {
-            SiElasticity::NeoHookean
-        };
-        if device.load_spring_length == 0.0 {
-            device.load_spring_length = device.side;
-        }
-        device.branch_limits = device.branch_limits.map(none);
-        device.conduction_field = none(device.conduction_field);
-        device.breakdown_field = none(device.breakdown_field);
-        device
+        described(self.device, self.source(), self.stiffening)
     }
 
     /// The units of its nondimensional numbers.
@@ -214,7 +198,7 @@ impl SiScene {
         let unit = scales.source(source);
         let [amplitude, frequency, phase] = self.alternating;
         let alternates = source == Source::Voltage && amplitude != 0.0;
-        let time = scales.time.value();
+        let time = scales.time;
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = scales.time(self.since);
         drive.voltage = scaled(self.source_input(), 1.0 / unit, time);
@@ -256,6 +240,36 @@ impl SiScene {
     }
 }
 
+/// A device with this source and J, κ2, κ3; what is given as 0 for "none" left out.
+pub(super) fn described<P: Parameter>(
+    mut device: SiDevice<P>,
+    source: Source,
+    [limit, second, third]: [P; 3],
+) -> SiDevice<P> {
+    let none = |value: P| {
+        if value.value() > 0.0 {
+            value
+        } else {
+            value.same(f64::INFINITY)
+        }
+    };
+    device.source = source;
+    device.elasticity = if limit.value() > 0.0 {
+        SiElasticity::Gent { limit }
+    } else if second.is_nothing() && third.is_nothing() {
+        SiElasticity::NeoHookean
+    } else {
+        SiElasticity::Yeoh { second, third }
+    };
+    if device.load_spring_length.value() == 0.0 {
+        device.load_spring_length = device.side;
+    }
+    device.branch_limits = device.branch_limits.map(none);
+    device.conduction_field = none(device.conduction_field);
+    device.breakdown_field = none(device.breakdown_field);
+    device
+}
+
 /// An input in other units: its value times `value`, of a time counted in units of `time`.
 fn scaled(input: &Polynomial, value: f64, time: f64) -> Polynomial {
     let mut offset = Jet::<{ HIGHEST_DERIVATIVE + 1 }>::constant(0.0);
@@ -280,12 +294,12 @@ pub(super) fn place(source: Source) -> usize {
 }
 
 /// The nondimensional first-order states of a device, from the charge and the dashpots.
-pub(super) fn internal(
-    device: &Device,
-    charge: f64,
-    dashpots: &[f64; BRANCHES],
-) -> [f64; crate::solver::coupled::MOST_STATES] {
-    let mut all = [0.0; crate::solver::coupled::MOST_STATES];
+pub(super) fn internal<P: Parameter>(
+    device: &Device<P>,
+    charge: P,
+    dashpots: &[P; BRANCHES],
+) -> [P; MOST_STATES] {
+    let mut all = [charge.same(0.0); MOST_STATES];
     let mut places = all.iter_mut();
     if device.has_charge_state()
         && let Some(place) = places.next()
@@ -293,10 +307,10 @@ pub(super) fn internal(
         *place = charge;
     }
     for (branch, dashpot) in device.branches.iter().zip(dashpots) {
-        if branch.modulus > 0.0
+        if branch.modulus.value() > 0.0
             && let Some(place) = places.next()
         {
-            *place = dashpot * dashpot;
+            *place = *dashpot * *dashpot;
         }
     }
     all

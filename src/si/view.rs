@@ -126,7 +126,7 @@ impl View<'_, Si> {
         let (basis, stage) = self.basis();
         let local = basis.local();
         let frequency = local.small_signal_frequency(&local.load(0.0), &stage);
-        frequency / (std::f64::consts::TAU * basis.scales.time.value())
+        frequency / (std::f64::consts::TAU * basis.scales.time)
     }
 
     /// By how much the true field may still grow until breakdown, in V/m.

@@ -9,7 +9,7 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-use super::number::Number;
+use super::number::{Number, Parameter, ParameterOf};
 
 /// Σ term\[k\] εᵏ for k < `TERMS`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,6 +167,26 @@ impl<const TERMS: usize> Number for Jet<TERMS> {
         if self.term[0] < 0.0 {
             return Jet::constant(0.0) - self;
         }
+        self
+    }
+}
+
+impl Parameter for Dual {
+    fn value(self) -> f64 {
+        self.term[0]
+    }
+
+    fn is_nothing(self) -> bool {
+        self.term == [0.0; 2]
+    }
+
+    fn with_value(self, value: f64) -> Dual {
+        Dual::new(value, self.slope())
+    }
+}
+
+impl ParameterOf<Dual> for Dual {
+    fn lift(self, _like: Dual) -> Dual {
         self
     }
 }

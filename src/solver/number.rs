@@ -45,6 +45,50 @@ pub trait Number:
     }
 }
 
+/// A number of which a formula is made, beside those that it is asked for: it may itself carry
+/// derivatives along.
+pub trait Parameter: Number {
+    /// Its value.
+    fn value(self) -> f64;
+
+    /// Whether it is 0 and stays it.
+    fn is_nothing(self) -> bool;
+
+    /// The same with another value, where that is known better.
+    #[must_use]
+    fn with_value(self, value: f64) -> Self;
+}
+
+/// A [`Parameter`] of formulas over `N`.
+pub trait ParameterOf<N>: Parameter {
+    /// The parameter, in as many lanes as `like` has.
+    fn lift(self, like: N) -> N;
+}
+
+impl Parameter for f64 {
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self
+    }
+
+    #[inline(always)]
+    fn is_nothing(self) -> bool {
+        self == 0.0
+    }
+
+    #[inline(always)]
+    fn with_value(self, value: f64) -> f64 {
+        value
+    }
+}
+
+impl<N: Number> ParameterOf<N> for f64 {
+    #[inline(always)]
+    fn lift(self, like: N) -> N {
+        like.same(self)
+    }
+}
+
 impl Number for f64 {
     #[inline(always)]
     fn same(self, value: f64) -> f64 {

@@ -114,7 +114,7 @@ fn appendix_a_in_si_units() {
     let relative = 6.198e-11 / 8.854_187_818_8e-12;
     let device = SiDevice::sheet(67.1e3, 1200.0, relative, [2e-3, 10e-3]);
     let scales = Scales::of(&device);
-    close(scales.time.value() * 1e6, 77.209_143_648_218_29, 1e-13);
+    close(scales.time * 1e6, 77.209_143_648_218_29, 1e-13);
     close(0.5 * scales.voltage, 32_902.998_232, 1e-5);
     let motion = motion(device.nondimensional(), 0.5, 0.0);
     let mut trajectory = start(&motion, 0.0, 1e-12).recording_extremes();

@@ -105,7 +105,7 @@ impl Scene {
             let mut input = Polynomial::constant(number(&terms[0]) / unit);
             let mut size = 1.0 / unit;
             for (order, term) in terms.iter().enumerate().skip(1) {
-                size *= order as f64 * scales.time.value();
+                size *= order as f64 * scales.time;
                 input.set_derivative(order, size * number(term));
             }
             Some(input)
@@ -119,7 +119,7 @@ impl Scene {
         if given.get("V_ac").is_some() {
             drive.harmonic = Harmonic {
                 amplitude: get("V_ac") / scales.voltage,
-                frequency: std::f64::consts::TAU * get("f") * scales.time.value(),
+                frequency: std::f64::consts::TAU * get("f") * scales.time,
                 phase: 0.0,
             };
         }

@@ -57,7 +57,7 @@ fn errors(name: &str, tolerance: f64, step: f64, records_energy: bool) -> Errors
         );
         see(
             |e| &mut e.rate,
-            (trajectory.rate() / scales.time.value() - get("lambda_dot_per_s")).abs() / rate,
+            (trajectory.rate() / scales.time - get("lambda_dot_per_s")).abs() / rate,
         );
         see(
             |e| &mut e.charge,

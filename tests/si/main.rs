@@ -1,6 +1,7 @@
 //! The actuator in SI units as a host sees it, without the C functions.
 
 mod dependencies;
+mod derivatives;
 mod exchange;
 mod host;
 mod motion;

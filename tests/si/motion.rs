@@ -1,7 +1,6 @@
 //! The motion by the variables of the table.
 
 use crate::host::{Host, row};
-use dielectric_elastomer_actuator::instance::Interface;
 use serde_json::Value;
 
 fn read(name: &str) -> Value {
@@ -267,71 +266,6 @@ fn saved_instances_go_on_bit_for_bit() {
     }
 }
 
-/// Directional derivatives by inputs, states and parameters against differences of the outputs.
-#[test]
-fn directional_derivatives_are_slopes() {
-    let values = [
-        ("R_s", 1e6),
-        ("eta", 0.02),
-        ("mu_1", 1e5),
-        ("tau_1", 1e-6),
-        ("J_m", 60.0),
-        ("k1", -0.1),
-        ("G_p", 1e-10),
-        ("lambda_start", 1.1),
-        ("lambda_dot_start", 1e4),
-        ("charge_start", 1e-11),
-        ("xi1_start", 1.02),
-        ("force", 1e-5),
-        ("lambda_max", 5.0),
-    ];
-    let unknowns = [
-        "lambda_ddot",
-        "charge_state_dot",
-        "xi1_dot",
-        "supply_current",
-        "electric_field",
-    ];
-    for (known, step) in [
-        ("voltage", 1e-3),
-        ("force", 1e-11),
-        ("lambda_start", 1e-6),
-        ("lambda_dot_start", 1e-2),
-        ("charge_start", 1e-17),
-        ("xi1_start", 1e-6),
-        ("mu", 0.3),
-        ("R_s", 1.0),
-        ("H", 1e-11),
-        ("tau_1", 1e-12),
-        ("J_m", 1e-4),
-        ("k1", 1e-6),
-    ] {
-        let mut host = Host::initializing(Interface::CoSimulation, &values);
-        let references = unknowns.map(|name| row(name).0);
-        let mut slopes = [0.0; 5];
-        host.instance
-            .directional_derivative(&references, &[row(known).0], &[1.0], |k, v| slopes[k] = v)
-            .expect("derivatives");
-        let value = host.get(known);
-        let mut at = |part: f64| {
-            host.set(known, value + part * step).expect("a value");
-            unknowns.map(|name| host.get(name))
-        };
-        let [up, down] = [at(1.0), at(-1.0)];
-        for k in 0..5 {
-            let difference = (up[k] - down[k]) / (2.0 * step);
-            let size = up[k].abs() / value.abs() + difference.abs();
-            let error = (slopes[k] - difference).abs();
-            assert!(
-                error < 1e-5 * size,
-                "{} by {known}: {} {difference}",
-                unknowns[k],
-                slopes[k]
-            );
-        }
-    }
-}
-
 /// Derivatives in time against differences along the motion.
 #[test]
 fn output_derivatives_are_those_of_the_motion() {
@@ -387,7 +321,7 @@ fn si_units_and_nondimensional_numbers_give_the_same_motion() {
     use dielectric_elastomer_actuator::nondimensional;
 
     let scales = Scales::of(&SiDevice::sheet(303e3, 1100.0, 2.8, [10e-6, 100e-6]));
-    let (time, volts, newtons) = (scales.time.value(), scales.voltage, scales.force);
+    let (time, volts, newtons) = (scales.time, scales.voltage, scales.force);
     let settings = [
         ("voltage", 0.4 * volts),
         ("V_ac", 0.2 * volts),

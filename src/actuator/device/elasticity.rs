@@ -13,31 +13,34 @@
 use serde::{Deserialize, Serialize};
 
 use crate::solver::double::Double;
-use crate::solver::number::Number;
+use crate::solver::jet::Dual;
+use crate::solver::number::{Number, Parameter, ParameterOf};
 
 /// The law of the elastic stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Elasticity {
+pub enum Elasticity<P = f64> {
     /// No stiffening.
     NeoHookean,
     /// The stretch is limited.
-    Gent(Locking),
+    Gent(Locking<P>),
     /// A polynomial in I; κ_j = C_j0/C10.
     Yeoh {
         /// κ2.
-        second: f64,
+        second: P,
         /// κ3.
-        third: f64,
+        third: P,
     },
 }
 
 /// Where a Gent material locks: 1 − I/J = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Locking {
-    limit: f64,
+pub struct Locking<P = f64> {
+    limit: P,
     largest: Double,
     smallest: Double,
-    third: f64,
+    /// Both as parameters.
+    ends: [P; 2],
+    third: P,
 }
 
 impl Locking {
@@ -48,26 +51,59 @@ impl Locking {
     /// and are refined by Newton's method in double length.
     #[must_use]
     pub fn new(limit: f64) -> Locking {
-        let a = 0.5 * (limit + 3.0);
+        Locking::of(limit, |x| x.value())
+    }
+
+    /// The same where J changes in a direction.
+    #[must_use]
+    pub fn along(limit: Dual) -> Locking<Dual> {
+        let j = limit.value();
+        Locking::of(limit, |x| {
+            // The slope of the root: x' (6x² − 2(J+3)x) = J' x².
+            let x = x.value();
+            Dual::new(x, limit.slope() * x / (6.0 * x - 2.0 * (j + 3.0)))
+        })
+    }
+}
+
+impl<P: Parameter> Locking<P> {
+    fn of(limit: P, parameter: impl Fn(Double) -> P) -> Locking<P> {
+        let j = limit.value();
+        let a = 0.5 * (j + 3.0);
         // cos θ = 1 − 27/(4a³), without the loss where θ is small.
         let angle = 2.0 * (27.0 / (8.0 * a.powi(3))).sqrt().min(1.0).asin();
         let root = |turn: f64| {
             let start = a / 3.0 * (1.0 + 2.0 * ((angle + turn) / 3.0).cos());
-            refined(limit, start)
+            refined(j, start)
         };
-        let largest = root(0.0);
-        let smallest = root(4.0 * std::f64::consts::PI);
+        let roots = [root(0.0), root(4.0 * std::f64::consts::PI)];
+        let [largest, smallest] = roots.map(|x| x.sqrt());
+        let squares = roots.map(parameter);
         Locking {
             limit,
-            largest: largest.sqrt(),
-            smallest: smallest.sqrt(),
-            third: 0.5 / (largest.value() * smallest.value()),
+            largest,
+            smallest,
+            ends: [
+                squares[0].sqrt().with_value(largest.high),
+                squares[1].sqrt().with_value(smallest.high),
+            ],
+            third: limit.same(0.5) / (squares[0] * squares[1]),
         }
+    }
+
+    /// Both locking stretches, counted from an origin.
+    #[must_use]
+    pub fn walls(&self, origin: Double) -> [P; 2] {
+        let [largest, smallest] = self.ends;
+        [
+            largest.with_value(self.largest.sub(origin).value()),
+            smallest.with_value(self.smallest.sub(origin).value()),
+        ]
     }
 
     /// J.
     #[must_use]
-    pub fn limit(&self) -> f64 {
+    pub fn limit(&self) -> P {
         self.limit
     }
 
@@ -86,12 +122,16 @@ impl Locking {
     /// 1 − I/J from the stretch and its distances to both locking stretches: no digits are lost
     /// near them.
     #[inline(always)]
-    pub fn gap<N: Number>(&self, stretch: N, to_largest: N, from_smallest: N) -> N {
-        let number = |value: f64| stretch.same(value);
+    pub fn gap<N: Number>(&self, stretch: N, to_largest: N, from_smallest: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
+        let lift = |parameter: P| parameter.lift(stretch);
         let square = stretch * stretch;
-        let above = to_largest * (stretch + number(self.largest.high));
-        let below = from_smallest * (stretch + number(self.smallest.high));
-        number(2.0 / self.limit) * above * below * (square + number(self.third)) / (square * square)
+        let above = to_largest * (stretch + lift(self.ends[0]));
+        let below = from_smallest * (stretch + lift(self.ends[1]));
+        let factor = lift(self.limit.same(2.0) / self.limit);
+        factor * above * below * (square + lift(self.third)) / (square * square)
     }
 }
 

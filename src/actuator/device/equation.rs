@@ -20,7 +20,7 @@ use crate::actuator::drive::LocalDrive;
 use crate::solver::coupled::{MOST_STATES, Slope, Stage};
 use crate::solver::double::Double;
 use crate::solver::jet::Dual;
-use crate::solver::number::Number;
+use crate::solver::number::{Number, Parameter, ParameterOf};
 
 /// What the drive gives at a time, or at lanes of times.
 #[derive(Clone, Copy, Debug)]
@@ -33,18 +33,18 @@ pub struct Load<N = f64> {
 
 /// A [`Device`] with the origins of time and stretch moved.
 #[derive(Clone, Copy, Debug)]
-pub struct LocalDevice<'a> {
-    pub(super) device: &'a Device,
+pub struct LocalDevice<'a, P = f64> {
+    pub(super) device: &'a Device<P>,
     pub(super) drive: LocalDrive<'a>,
     /// The stretch at position 0.
     origin: f64,
     /// Both locking stretches, counted from there.
-    walls: [f64; 2],
+    walls: [P; 2],
     /// a1 − 1, with the spring; a3, a5 of the folded equation, and k̄l̄.
-    linear: f64,
-    cubic: f64,
-    quintic: f64,
-    preload: f64,
+    linear: P,
+    cubic: P,
+    quintic: P,
+    preload: P,
     has_charge: bool,
 }
 
@@ -77,26 +77,29 @@ impl<N: Number> Powers<N> {
     }
 }
 
-impl Permittivity {
+impl<P: Parameter> Permittivity<P> {
     /// e and e' at a stretch.
     #[inline(always)]
-    pub fn at<N: Number>(&self, stretch: N) -> [N; 2] {
+    pub fn at<N: Number>(&self, stretch: N) -> [N; 2]
+    where
+        P: ParameterOf<N>,
+    {
         let number = |value: f64| stretch.same(value);
-        let [k1, k2, k3] = self.terms;
+        let [k1, k2, k3] = self.terms.map(|term| term.lift(stretch));
         let x = stretch - number(1.0);
-        let value = number(k3)
-            .mul_add(x, number(k2))
-            .mul_add(x, number(k1))
-            .mul_add(x, number(1.0));
-        let slope = number(3.0 * k3)
-            .mul_add(x, number(2.0 * k2))
-            .mul_add(x, number(k1));
+        let value = k3.mul_add(x, k2).mul_add(x, k1).mul_add(x, number(1.0));
+        let slope = (number(3.0) * k3)
+            .mul_add(x, number(2.0) * k2)
+            .mul_add(x, k1);
         [value, slope]
     }
 
     /// λ³e + ¼λ⁴e', the factor of the squared voltage in the force.
     #[inline(always)]
-    pub fn pull<N: Number>(&self, stretch: N) -> N {
+    pub fn pull<N: Number>(&self, stretch: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let cube = stretch * stretch * stretch;
         if self.is_constant() {
             return cube;
@@ -106,23 +109,21 @@ impl Permittivity {
     }
 }
 
-impl<'a> LocalDevice<'a> {
+impl<'a, P: Parameter> LocalDevice<'a, P> {
     /// The device under a drive, seen from a time and an origin of the stretch.
     #[must_use]
-    pub fn new(device: &'a Device, drive: &'a Drive, time: &Double, origin: &Double) -> Self {
+    pub fn new(device: &'a Device<P>, drive: &'a Drive, time: &Double, origin: &Double) -> Self {
         let folded = device.folded();
         let walls = match &device.elasticity {
-            Elasticity::Gent(locking) => {
-                [locking.largest(), locking.smallest()].map(|wall| wall.sub(*origin).value())
-            }
-            _ => [f64::INFINITY, f64::NEG_INFINITY],
+            Elasticity::Gent(locking) => locking.walls(*origin),
+            _ => [f64::INFINITY, f64::NEG_INFINITY].map(|wall| folded.linear.same(wall)),
         };
         LocalDevice {
             device,
             drive: drive.at(time),
             origin: origin.value(),
             walls,
-            linear: folded.linear - 1.0,
+            linear: folded.linear - folded.linear.same(1.0),
             cubic: folded.cubic,
             quintic: folded.quintic,
             preload: device.spring.preload(),
@@ -131,12 +132,12 @@ impl<'a> LocalDevice<'a> {
     }
 
     /// Both locking stretches, counted from the origin.
-    pub(super) fn walls(&self) -> [f64; 2] {
+    pub(super) fn walls(&self) -> [P; 2] {
         self.walls
     }
 
     /// The coefficients of λ, λ³ and λ⁵ without the elastic ones.
-    pub(super) fn surface(&self) -> [f64; 3] {
+    pub(super) fn surface(&self) -> [P; 3] {
         [self.linear, self.cubic, self.quintic]
     }
 
@@ -148,19 +149,24 @@ impl<'a> LocalDevice<'a> {
 
     /// 1 − I/J of a Gent material at a position.
     #[inline(always)]
-    pub(super) fn gap<N: Number>(&self, locking: &Locking, position: N) -> N {
-        let [largest, smallest] = self.walls;
-        let number = |value: f64| position.same(value);
+    pub(super) fn gap<N: Number>(&self, locking: &Locking<P>, position: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
+        let [largest, smallest] = self.walls.map(|wall| wall.lift(position));
         locking.gap(
             self.stretch(position),
-            number(largest) - position,
-            position - number(smallest),
+            largest - position,
+            position - smallest,
         )
     }
 
     /// The elastic factor h at a position.
     #[inline(always)]
-    fn stiffening<N: Number>(&self, position: N, square: N) -> N {
+    fn stiffening<N: Number>(&self, position: N, square: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let one = position.same(1.0);
         match &self.device.elasticity {
             Elasticity::NeoHookean => one,
@@ -168,8 +174,9 @@ impl<'a> LocalDevice<'a> {
             Elasticity::Yeoh { second, third } => {
                 let number = |value: f64| position.same(value);
                 let i = invariant(square);
-                number(3.0 * third)
-                    .mul_add(i, number(2.0 * second))
+                let [second, third] = [*second, *third].map(|factor| factor.lift(position));
+                (number(3.0) * third)
+                    .mul_add(i, number(2.0) * second)
                     .mul_add(i, one)
             }
         }
@@ -183,7 +190,10 @@ impl<'a> LocalDevice<'a> {
 
     /// The voltage at the membrane φ_m.
     #[inline(always)]
-    pub fn membrane_voltage<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> N {
+    pub fn membrane_voltage<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let charge = match self.device.port.source {
             Source::Voltage if !self.has_charge => return load.source,
             Source::Charge => load.source,
@@ -194,7 +204,10 @@ impl<'a> LocalDevice<'a> {
 
     /// λ⁴e, the capacitance.
     #[inline(always)]
-    pub fn capacitance<N: Number>(&self, stretch: N) -> N {
+    pub fn capacitance<N: Number>(&self, stretch: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let square = stretch * stretch;
         let fourth = square * square;
         if self.device.permittivity.is_constant() {
@@ -206,18 +219,22 @@ impl<'a> LocalDevice<'a> {
     /// The conductance of all leaks together, and its derivative by the voltage times the
     /// voltage.
     #[inline(always)]
-    pub fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2] {
+    pub fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2]
+    where
+        P: ParameterOf<N>,
+    {
         let port = &self.device.port;
         let number = |value: f64| square.same(value);
-        let fixed = number(port.conductance);
-        if port.conductivity == 0.0 {
+        let fixed = port.conductance.lift(square);
+        if port.conductivity.is_nothing() {
             return [fixed, number(0.0)];
         }
-        let weak = number(port.conductivity) * square * square;
-        if port.conduction_field.is_infinite() {
+        let weak = port.conductivity.lift(square) * square * square;
+        let field = port.conduction_field;
+        if field.value().is_infinite() {
             return [fixed + weak, number(0.0)];
         }
-        let ratio = voltage.magnitude() * square * number(1.0 / port.conduction_field);
+        let ratio = voltage.magnitude() * square * (field.same(1.0) / field).lift(square);
         let strong = weak * ratio.exp();
         [fixed + strong, strong * ratio]
     }
@@ -225,41 +242,101 @@ impl<'a> LocalDevice<'a> {
     /// The force without the damping, the inertia, and the damping: x'' is (force − damping ·
     /// x')/inertia.
     #[inline(always)]
-    pub fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3] {
+    pub fn forces<N: Number>(&self, load: &Load<N>, stage: &Stage<N>) -> [N; 3]
+    where
+        P: ParameterOf<N>,
+    {
         self.forces_at(load.prestress, self.membrane_voltage(load, stage), stage)
     }
 
     /// [`LocalDevice::forces`] under this voltage at the membrane.
     #[inline(always)]
-    fn forces_at<N: Number>(&self, prestress: N, voltage: N, stage: &Stage<N>) -> [N; 3] {
+    fn forces_at<N: Number>(&self, prestress: N, voltage: N, stage: &Stage<N>) -> [N; 3]
+    where
+        P: ParameterOf<N>,
+    {
         let device = self.device;
         let p = Powers::of(self.stretch(stage.position));
         let number = |value: f64| p.stretch.same(value);
+        let lift = |parameter: P| parameter.lift(p.stretch);
         let inverse_sixth = p.inverse_fourth * p.inverse_square;
         let mut elastic = p.stretch - p.inverse_fifth;
-        if device.elasticity != Elasticity::NeoHookean {
+        if !matches!(device.elasticity, Elasticity::NeoHookean) {
             elastic = elastic * self.stiffening(stage.position, p.square);
         }
         let surface = p.stretch
-            * number(self.quintic)
-                .mul_add(p.square, number(self.cubic))
-                .mul_add(p.square, number(self.linear));
+            * lift(self.quintic)
+                .mul_add(p.square, lift(self.cubic))
+                .mul_add(p.square, lift(self.linear));
         let electric = device.permittivity.pull(p.stretch);
         let inertial = number(6.0) * inverse_sixth * p.inverse * stage.rate * stage.rate;
         let mut force = inertial - elastic - surface
-            + (prestress + number(self.preload))
+            + (prestress + lift(self.preload))
             + voltage * voltage * electric;
         for (k, branch) in device.present_branches().enumerate() {
             let g = self.branch_state(&stage.internal, k);
             let pull = p.stretch / g - g * g * p.inverse_fifth;
-            force = force - number(branch.modulus) * branch.stiffening(p.square / g) * pull;
+            force = force - lift(branch.modulus) * branch.stiffening(p.square / g) * pull;
         }
-        let inertia = number(2.0).mul_add(inverse_sixth, number(device.sheet.aspect));
-        let damping = number(6.0 * device.damping.viscosity)
-            .mul_add(p.inverse_square, number(device.damping.linear));
+        let inertia = number(2.0).mul_add(inverse_sixth, lift(device.sheet.aspect));
+        let damping = (number(6.0) * lift(device.damping.viscosity))
+            .mul_add(p.inverse_square, lift(device.damping.linear));
         [force, inertia, damping]
     }
 
+    /// z' of the charge, where it is a state, and of the branches.
+    #[inline(always)]
+    pub fn first_order<N: Number>(
+        &self,
+        load: &Load<N>,
+        stage: &Stage<N>,
+    ) -> [Slope<N>; MOST_STATES]
+    where
+        P: ParameterOf<N>,
+    {
+        let zero = stage.position.same(0.0);
+        let mut slopes = [Slope {
+            value: zero,
+            relaxation: zero,
+        }; MOST_STATES];
+        let p = Powers::of(self.stretch(stage.position));
+        if self.has_charge {
+            slopes[0] = self.charge_slope(load, stage, p.square);
+        }
+        for (k, branch) in self.device.present_branches().enumerate() {
+            let g = self.branch_state(&stage.internal, k);
+            slopes[k + usize::from(self.has_charge)] = branch.slope(g, &p);
+        }
+        slopes
+    }
+
+    #[inline(always)]
+    fn charge_slope<N: Number>(&self, load: &Load<N>, stage: &Stage<N>, square: N) -> Slope<N>
+    where
+        P: ParameterOf<N>,
+    {
+        let number = |value: f64| square.same(value);
+        let one = number(1.0);
+        let capacitance = self.capacitance(self.stretch(stage.position));
+        let voltage = stage.internal[0] / capacitance;
+        let [conductance, steeper] = self.conductance(voltage, square);
+        let leak = voltage * conductance;
+        let port = &self.device.port;
+        if port.source == Source::Current {
+            return Slope {
+                value: load.source - leak,
+                relaxation: (conductance + steeper) / capacitance,
+            };
+        }
+        let series = (port.resistance.same(1.0) / port.resistance).lift(square);
+        Slope {
+            value: (load.source - voltage) * series - leak,
+            relaxation: (series + conductance + steeper) * (one / capacitance),
+        }
+    }
+}
+
+impl LocalDevice<'_> {
     /// The angular frequency of small oscillations around a stage, nothing else moving: under a
     /// source of voltage the voltage at the membrane is held, under one of current or charge the
     /// charge, and the dashpots of the branches stand. 0 where the stage is unstable.
@@ -284,77 +361,40 @@ impl<'a> LocalDevice<'a> {
         let [force, inertia, _] = self.forces_at(fixed(load.prestress), held, &still);
         (-force.slope() / inertia.term[0]).max(0.0).sqrt()
     }
-
-    /// z' of the charge, where it is a state, and of the branches.
-    #[inline(always)]
-    pub fn first_order<N: Number>(
-        &self,
-        load: &Load<N>,
-        stage: &Stage<N>,
-    ) -> [Slope<N>; MOST_STATES] {
-        let zero = stage.position.same(0.0);
-        let mut slopes = [Slope {
-            value: zero,
-            relaxation: zero,
-        }; MOST_STATES];
-        let p = Powers::of(self.stretch(stage.position));
-        if self.has_charge {
-            slopes[0] = self.charge_slope(load, stage, p.square);
-        }
-        for (k, branch) in self.device.present_branches().enumerate() {
-            let g = self.branch_state(&stage.internal, k);
-            slopes[k + usize::from(self.has_charge)] = branch.slope(g, &p);
-        }
-        slopes
-    }
-
-    #[inline(always)]
-    fn charge_slope<N: Number>(&self, load: &Load<N>, stage: &Stage<N>, square: N) -> Slope<N> {
-        let number = |value: f64| square.same(value);
-        let one = number(1.0);
-        let capacitance = self.capacitance(self.stretch(stage.position));
-        let voltage = stage.internal[0] / capacitance;
-        let [conductance, steeper] = self.conductance(voltage, square);
-        let leak = voltage * conductance;
-        let port = &self.device.port;
-        if port.source == Source::Current {
-            return Slope {
-                value: load.source - leak,
-                relaxation: (conductance + steeper) / capacitance,
-            };
-        }
-        let series = number(1.0 / port.resistance);
-        Slope {
-            value: (load.source - voltage) * series - leak,
-            relaxation: (series + conductance + steeper) * (one / capacitance),
-        }
-    }
 }
 
-impl Branch {
+impl<P: Parameter> Branch<P> {
     /// h of its spring at s = λ²/g.
     #[inline(always)]
-    pub(super) fn stiffening<N: Number>(&self, s: N) -> N {
+    pub(super) fn stiffening<N: Number>(&self, s: N) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let one = s.same(1.0);
-        if self.limit.is_infinite() {
+        if self.limit.value().is_infinite() {
             return one;
         }
-        one / (one - invariant(s) * s.same(1.0 / self.limit))
+        one / (one - invariant(s) * (self.limit.same(1.0) / self.limit).lift(s))
     }
 
     /// g' of its state g.
     #[inline(always)]
-    fn slope<N: Number>(&self, g: N, p: &Powers<N>) -> Slope<N> {
+    fn slope<N: Number>(&self, g: N, p: &Powers<N>) -> Slope<N>
+    where
+        P: ParameterOf<N>,
+    {
         let number = |value: f64| g.same(value);
-        let third = number(1.0 / (3.0 * self.relaxation_time));
+        let time = self.relaxation_time;
+        let third = (time.same(1.0) / (time.same(3.0) * time)).lift(g);
         let s = p.square / g;
         let h = self.stiffening(s);
         let pull = p.square - g * g * g * p.inverse_fourth;
         let mut relaxation = number(3.0) * g * g * p.inverse_fourth * h;
-        if self.limit.is_finite() {
+        if self.limit.value().is_finite() {
             // ∂h/∂g = −(2h²/J)(s − s⁻²)/g.
             let steep = (s - number(1.0) / (s * s)) / g;
-            relaxation = relaxation + pull * h * h * number(2.0 / self.limit) * steep;
+            let factor = (self.limit.same(2.0) / self.limit).lift(g);
+            relaxation = relaxation + pull * h * h * factor * steep;
         }
         Slope {
             value: third * pull * h,

@@ -6,68 +6,69 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::Elasticity;
 use crate::actuator::{Coefficients, Parameters};
+use crate::solver::number::Parameter;
 
 /// Maxwell branches that an actuator may have.
 pub const MOST_BRANCHES: usize = 3;
 
 /// A real actuator.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Device {
+pub struct Device<P = f64> {
     /// The sheet (Eq. 15 of the paper). Its aspect c is L²/T² with the thickness T of the whole
     /// stack; a load mass adds 12m/(ρT³).
-    pub sheet: Parameters,
+    pub sheet: Parameters<P>,
     /// The law of its elastic stiffness.
-    pub elasticity: Elasticity,
+    pub elasticity: Elasticity<P>,
     /// A spring between opposite edges.
-    pub spring: Spring,
+    pub spring: Spring<P>,
     /// How the permittivity depends on the stretch.
-    pub permittivity: Permittivity,
+    pub permittivity: Permittivity<P>,
     /// Viscous losses.
-    pub damping: Damping,
+    pub damping: Damping<P>,
     /// Maxwell branches; those with a modulus of 0 are absent.
-    pub branches: [Branch; MOST_BRANCHES],
+    pub branches: [Branch<P>; MOST_BRANCHES],
     /// The electrical port.
-    pub port: Port,
+    pub port: Port<P>,
     /// The true field at which the material breaks down.
-    pub breakdown: Option<Breakdown>,
+    pub breakdown: Option<Breakdown<P>>,
 }
 
 /// A spring between opposite edges, in each direction: force k̄(λ − l̄).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spring {
+pub struct Spring<P = f64> {
     /// k̄ = k/(µT).
-    pub stiffness: f64,
+    pub stiffness: P,
     /// l̄, the stretch at which it is relaxed.
-    pub rest: f64,
+    pub rest: P,
 }
 
 /// e(λ) = ε(λ)/ε(1) = 1 + k1 x + k2 x² + k3 x³, x = λ − 1.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Permittivity {
+pub struct Permittivity<P = f64> {
     /// k1, k2, k3.
-    pub terms: [f64; 3],
+    pub terms: [P; 3],
 }
 
 /// Viscous losses.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Damping {
+pub struct Damping<P = f64> {
     /// b̄ = b/(µTt0), a dashpot between opposite edges in each direction.
-    pub linear: f64,
+    pub linear: P,
     /// η̄ = η/(µt0), Kelvin–Voigt: a Newtonian viscosity beside the elastic stress.
-    pub viscosity: f64,
+    pub viscosity: P,
 }
 
 /// A Maxwell branch: a spring in series with a Newtonian dashpot (C. C. Foo, S. Cai, S. J. A.
 /// Koh, S. Bauer, Z. Suo, J. Appl. Phys. 111 (2012) 034102). Its state is g = ξ², the squared
 /// stretch of the dashpot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Branch {
+pub struct Branch<P = f64> {
     /// m = µ_k/µ.
-    pub modulus: f64,
+    pub modulus: P,
     /// τ̄ = τ/t0.
-    pub relaxation_time: f64,
+    pub relaxation_time: P,
     /// The limit J of its own Gent spring; infinite for a neo-Hookean one.
-    pub limit: f64,
+    pub limit: P,
 }
 
 /// What the source imposes.
@@ -83,26 +84,26 @@ pub enum Source {
 
 /// The electrical port.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Port {
+pub struct Port<P = f64> {
     /// What the source imposes.
     pub source: Source,
     /// r_s = R_s C0/t0, the resistance in series; 0 for an ideal source.
-    pub resistance: f64,
+    pub resistance: P,
     /// ḡ_p = G_p t0/C0, a fixed conductance in parallel.
-    pub conductance: f64,
+    pub conductance: P,
     /// σ̄ = σ t0/ε, the conductivity of the material at a weak field.
-    pub conductivity: f64,
+    pub conductivity: P,
     /// Ē_c, the field over which the conductivity grows by e: σ̄ exp(E/Ē_c); infinite for none.
-    pub conduction_field: f64,
+    pub conduction_field: P,
 }
 
 /// The breakdown field E_b λⁿ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Breakdown {
+pub struct Breakdown<P = f64> {
     /// E_b at λ = 1, in units of V0/H.
-    pub field: f64,
+    pub field: P,
     /// n.
-    pub exponent: f64,
+    pub exponent: P,
 }
 
 impl Device {
@@ -145,12 +146,14 @@ impl Device {
             && self.port.resistance == 0.0
             && self.breakdown.is_none()
     }
+}
 
+impl<P: Parameter> Device<P> {
     /// The coefficients of Eq. 16, the spring folded in.
     #[must_use]
-    pub fn folded(&self) -> Coefficients {
+    pub fn folded(&self) -> Coefficients<P> {
         let mut folded = Coefficients::fold(&self.sheet);
-        folded.linear += self.spring.stiffness;
+        folded.linear = folded.linear + self.spring.stiffness;
         folded
     }
 
@@ -158,22 +161,24 @@ impl Device {
     #[must_use]
     pub fn has_charge_state(&self) -> bool {
         match self.port.source {
-            Source::Voltage => self.port.resistance > 0.0,
+            Source::Voltage => self.port.resistance.value() > 0.0,
             Source::Current => true,
             Source::Charge => false,
         }
     }
 
     /// The branches that are present.
-    pub fn present_branches(&self) -> impl Iterator<Item = &Branch> {
-        self.branches.iter().filter(|branch| branch.modulus > 0.0)
+    pub fn present_branches(&self) -> impl Iterator<Item = &Branch<P>> {
+        self.branches
+            .iter()
+            .filter(|branch| branch.modulus.value() > 0.0)
     }
 }
 
-impl Spring {
+impl<P: Parameter> Spring<P> {
     /// k̄l̄, what it adds to the prestress.
     #[must_use]
-    pub fn preload(&self) -> f64 {
+    pub fn preload(&self) -> P {
         self.stiffness * self.rest
     }
 }
@@ -201,11 +206,13 @@ impl Permittivity {
         let root = (k2 * k2 - 3.0 * k1 * k3).sqrt();
         [(root - k2) / (3.0 * k3), (-root - k2) / (3.0 * k3)].map(|x| 1.0 + x)
     }
+}
 
+impl<P: Parameter> Permittivity<P> {
     /// Whether it keeps its value.
     #[must_use]
     pub fn is_constant(&self) -> bool {
-        self.terms == [0.0; 3]
+        self.terms.iter().all(|term| term.is_nothing())
     }
 }
 
