@@ -301,8 +301,14 @@ class Actuator:
             raise
 
 
-def frame(response: np.ndarray) -> Any:
-    """A response as a pandas DataFrame with the time as its index (extra ``pandas``)."""
+def frame(response: np.ndarray, units: Mapping[str, str] | None = None) -> Any:
+    """A response as a pandas DataFrame with the time as its index (extra ``pandas``).
+
+    With `Actuator.units` its ``attrs["units"]`` holds the unit of each column and of the time.
+    """
     import pandas
 
-    return pandas.DataFrame(response).set_index("time")
+    table = pandas.DataFrame(response).set_index("time")
+    if units is not None:
+        table.attrs["units"] = {name: units[name] for name in response.dtype.names or ()}
+    return table

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dielectric_actuator import Actuator, UnknownName, device, presets
+from dielectric_actuator import Actuator, UnknownName, device, frame, presets
 from dielectric_actuator.identification import fit
 from dielectric_actuator.plot import OVERVIEW, overview
 
@@ -169,6 +169,11 @@ def test_names_and_values_out_of_range_are_said():
         fit(good, good, good, free=["phi_scale"], model="si")
     with pytest.raises(ValueError, match=r"H is 10; it must be a number from .* to 0\.0"):
         device.nondimensional({"H": 10.0})
+
+
+def test_a_table_has_units(film):
+    table = frame(film.run({}, stop_time=1e-6, communication_step=1e-7, outputs=["lambda", "charge"]), film.units)
+    assert table.attrs["units"] == {"time": "s", "lambda": "", "charge": "C"} and len(table) == 11
 
 
 def test_plots_have_units(film):
