@@ -24,7 +24,7 @@ impl View<'_, Si> {
         let basis = Basis {
             device: described.nondimensional_along(),
             scales: Scales::along(&described),
-            described,
+            stack: described.layers * described.thickness,
             drive: basis.drive,
             time: basis.time,
             origin: basis.origin,

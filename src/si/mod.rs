@@ -4,6 +4,7 @@
 mod account;
 mod along;
 mod course;
+mod folded;
 mod motion;
 mod sample;
 mod scene;

@@ -47,10 +47,19 @@ impl SiMotion {
         self.course.position_from_origin()
     }
 
+    /// The stretch and its rate in 1/s.
+    #[must_use]
+    pub fn stretch(&self) -> State {
+        let State { position, rate } = self.course.state();
+        State {
+            position,
+            rate: rate / self.scales.time,
+        }
+    }
+
     /// The present state in SI units.
     #[must_use]
     pub fn state(&self) -> SiState {
-        let State { position, rate } = self.course.state();
         let states = self.course.internal();
         let device = &self.motion.device;
         let mut places = states.into_iter();
@@ -66,10 +75,7 @@ impl SiMotion {
             }
         }
         SiState {
-            motion: State {
-                position,
-                rate: rate / self.scales.time,
-            },
+            motion: self.stretch(),
             charge,
             dashpots,
         }
@@ -129,11 +135,14 @@ impl SiMotion {
         let same = motion.device == self.motion.device
             && motion.records_energy == self.motion.records_energy
             && scales == self.scales;
-        let before = self.at_present(|local, _| local.load(0.0).source);
         if same {
-            self.motion = motion;
+            let records = self.motion.records_energy;
+            let before = records.then(|| self.at_present(|local, _| local.load(0.0).source));
+            self.motion.drive = motion.drive;
             self.course.restart();
-            self.book_step(before);
+            if let Some(before) = before {
+                self.book_step(before);
+            }
             return;
         }
         let charge = self.at_present(|local, stage| {

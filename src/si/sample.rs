@@ -5,22 +5,46 @@ use super::Si;
 use super::scene::{BRANCHES, SiScene, SiState, internal};
 use crate::actuator::device::equation::Load;
 use crate::actuator::device::{Device, LocalDevice, Source};
-use crate::actuator::scales::{Scales, SiDevice};
+use crate::actuator::scales::Scales;
 use crate::model::View;
+use crate::solver::State;
 use crate::solver::coupled::Stage;
 use crate::solver::double::Double;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::number::{Number, Parameter, ParameterOf};
 
 macro_rules! sample {
-    ($($(#[$about:meta])* $name:ident,)*) => {
+    (
+        of the motion { $($(#[$of:meta])* $moved:ident,)* }
+        of everything { $($(#[$about:meta])* $name:ident,)* }
+    ) => {
+        /// The distances and rates at one time, of the stretch and its rate alone.
+        struct Geometry<N> {
+            $($moved: N,)*
+        }
+
+        impl View<'_, Si> {
+            $($(#[$of])*
+            #[must_use]
+            pub fn $moved(&self) -> f64 {
+                self.geometry().$moved
+            })*
+        }
+
         /// The actuator at one time, as numbers that may carry their derivatives along.
         #[derive(Clone, Copy, Debug)]
         pub struct Sample<N> {
+            $($(#[$of])* pub $moved: N,)*
             $($(#[$about])* pub $name: N,)*
         }
 
         impl<N: Number> Sample<N> {
+            $($(#[$of])*
+            #[must_use]
+            pub fn $moved(&self) -> N {
+                self.$moved
+            })*
+
             $($(#[$about])*
             #[must_use]
             pub fn $name(&self) -> N {
@@ -39,12 +63,11 @@ macro_rules! sample {
 }
 
 sample! {
+    of the motion {
     /// λ.
     stretch,
     /// dλ/dt in 1/s.
     stretch_rate,
-    /// d²λ/dt² in 1/s².
-    stretch_acceleration,
     /// λ3 = 1/λ².
     thickness_stretch,
     /// dλ3/dt = −2λ⁻³ dλ/dt in 1/s.
@@ -55,10 +78,14 @@ sample! {
     edge_displacement,
     /// Its rate in m/s.
     edge_velocity,
-    /// Its second derivative in m/s².
-    edge_acceleration,
     /// The thickness of the stack in m.
     thickness,
+    }
+    of everything {
+    /// d²λ/dt² in 1/s².
+    stretch_acceleration,
+    /// The second derivative of the distance of opposite edges in m/s².
+    edge_acceleration,
     /// The charge on the electrodes in C.
     charge,
     /// The current from the source in A.
@@ -91,11 +118,31 @@ sample! {
     dashpot_2_rate,
     /// dξ/dt of the third dashpot in 1/s.
     dashpot_3_rate,
+    }
+}
+
+impl<N: Number> Geometry<N> {
+    /// From the stretch and its rate, the side and the thickness before deformation.
+    fn of(stretch: N, rate: N, side: N, stack: N) -> Geometry<N> {
+        let one = stretch.same(1.0);
+        let square = stretch * stretch;
+        Geometry {
+            stretch,
+            stretch_rate: rate,
+            thickness_stretch: one / square,
+            thickness_stretch_rate: stretch.same(-2.0) * rate / (square * stretch),
+            edge_distance: stretch * side,
+            edge_displacement: (stretch - one) * side,
+            edge_velocity: rate * side,
+            thickness: stack / square,
+        }
+    }
 }
 
 /// What a sample is computed with.
 pub(super) struct Basis<P = f64> {
-    pub described: SiDevice<P>,
+    /// The thickness of the stack before deformation, in m.
+    pub stack: P,
     pub device: Device<P>,
     pub scales: Scales<P>,
     pub drive: crate::actuator::Drive,
@@ -107,14 +154,13 @@ pub(super) struct Basis<P = f64> {
 
 impl Basis {
     pub fn of(scene: &SiScene, time: &Double, origin: Double) -> Basis {
-        let described = scene.described();
-        let scales = Scales::of(&described);
+        let folded = scene.folded();
         Basis {
-            device: described.nondimensional(),
-            drive: scene.drive(&scales),
-            time: scales.time(*time),
-            described,
-            scales,
+            stack: folded.stack,
+            device: folded.device,
+            drive: scene.drive(&folded.scales),
+            time: folded.scales.time(*time),
+            scales: folded.scales,
             origin,
         }
     }
@@ -198,9 +244,6 @@ impl<P: Parameter> Basis<P> {
             Source::Voltage => load.source,
             _ => voltage + lift(device.port.resistance) * current,
         };
-        let one = number(1.0);
-        let side = lift(scales.length);
-        let stack = self.described.layers * self.described.thickness;
         let rate = stage.rate * per_second;
         let zero = number(0.0);
         let mut rates = [zero; BRANCHES];
@@ -222,17 +265,27 @@ impl<P: Parameter> Basis<P> {
         let current_unit = lift(scales.current());
         let volts = lift(scales.voltage);
         let supply_current = current * current_unit;
+        let Geometry {
+            stretch,
+            stretch_rate,
+            thickness_stretch,
+            thickness_stretch_rate,
+            edge_distance,
+            edge_displacement,
+            edge_velocity,
+            thickness,
+        } = Geometry::of(stretch, rate, lift(scales.length), lift(self.stack));
         Sample {
             stretch,
-            stretch_rate: rate,
+            stretch_rate,
             stretch_acceleration: acceleration * per_second * per_second,
-            thickness_stretch: one / square,
-            thickness_stretch_rate: number(-2.0) * rate / (square * stretch),
-            edge_distance: stretch * side,
-            edge_displacement: (stretch - one) * side,
-            edge_velocity: rate * side,
-            edge_acceleration: acceleration * per_second * per_second * side,
-            thickness: lift(stack) / square,
+            thickness_stretch,
+            thickness_stretch_rate,
+            edge_distance,
+            edge_displacement,
+            edge_velocity,
+            edge_acceleration: acceleration * per_second * per_second * lift(scales.length),
+            thickness,
             charge: voltage * capacitance * lift(scales.charge),
             supply_current,
             capacitance: capacitance * lift(scales.capacitance),
@@ -240,7 +293,7 @@ impl<P: Parameter> Basis<P> {
             supply_voltage: supply * volts,
             electric_field: voltage * square * lift(scales.field),
             electrical_power: supply * volts * supply_current,
-            mechanical_power: number(2.0) * lift(scales.force) * load.prestress * rate * side,
+            mechanical_power: number(2.0) * lift(scales.force) * load.prestress * edge_velocity,
             charge_state_rate: if has_charge && !held {
                 charge_slope * current_unit
             } else {
@@ -258,6 +311,14 @@ impl<P: Parameter> Basis<P> {
 }
 
 impl View<'_, Si> {
+    /// What follows from the motion alone, without the rest.
+    fn geometry(&self) -> Geometry<f64> {
+        let State { position, rate } = self.motion();
+        let device = &self.scene.device;
+        let stack = device.layers * device.thickness;
+        Geometry::of(position, rate, device.side, stack)
+    }
+
     /// All quantities at the present.
     #[must_use]
     pub(super) fn sample(&self) -> Sample<f64> {

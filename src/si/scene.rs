@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::folded::Memory;
 use super::thresholds::Thresholds;
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
@@ -83,6 +84,9 @@ pub struct SiScene {
     /// Pull-in voltages that are known.
     #[serde(skip)]
     pub thresholds: Thresholds,
+    /// The actuator in nondimensional numbers.
+    #[serde(skip)]
+    pub memory: Memory,
 }
 
 impl SiScene {
@@ -126,6 +130,7 @@ impl SiScene {
             terminate_on_pull_in: 0.0,
             on_breakdown_number: 0.0,
             thresholds: Thresholds::default(),
+            memory: Memory::default(),
         }
     }
 
@@ -188,7 +193,7 @@ impl SiScene {
     /// The units of its nondimensional numbers.
     #[must_use]
     pub fn scales(&self) -> Scales {
-        Scales::of(&self.described())
+        self.folded().scales
     }
 
     /// Its inputs in nondimensional numbers.
@@ -217,10 +222,10 @@ impl SiScene {
     /// Its motion in nondimensional numbers.
     #[must_use]
     pub fn motion(&self) -> DeviceMotion {
-        let described = self.described();
+        let folded = self.folded();
         DeviceMotion {
-            device: described.nondimensional(),
-            drive: self.drive(&Scales::of(&described)),
+            device: folded.device,
+            drive: self.drive(&folded.scales),
             records_energy: self.record_energy,
         }
     }
@@ -272,6 +277,9 @@ pub(super) fn described<P: Parameter>(
 
 /// An input in other units: its value times `value`, of a time counted in units of `time`.
 fn scaled(input: &Polynomial, value: f64, time: f64) -> Polynomial {
+    if input.is_constant() {
+        return Polynomial::constant(value * input.value());
+    }
     let mut offset = Jet::<{ HIGHEST_DERIVATIVE + 1 }>::constant(0.0);
     offset.term[1] = time;
     let series = input.at(offset);

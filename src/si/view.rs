@@ -34,15 +34,30 @@ impl View<'_, Si> {
             Place::On(motion) => motion.state(),
             Place::At { state, .. } => state,
         };
-        if let Some(limit) = self.held() {
-            state.motion.rate = 0.0;
-            match limit {
-                SiLimit::Stretch(Limit::Lower) => state.motion.position = self.scene.limits.lower,
-                SiLimit::Stretch(Limit::Upper) => state.motion.position = self.scene.limits.upper,
-                SiLimit::Breakdown => {}
-            }
-        }
+        self.hold(&mut state.motion);
         state
+    }
+
+    /// The stretch and its rate at present.
+    pub(super) fn motion(&self) -> State {
+        let mut motion = match self.place {
+            Place::On(motion) => motion.stretch(),
+            Place::At { state, .. } => state.motion,
+        };
+        self.hold(&mut motion);
+        motion
+    }
+
+    fn hold(&self, motion: &mut State) {
+        let Some(limit) = self.held() else {
+            return;
+        };
+        motion.rate = 0.0;
+        match limit {
+            SiLimit::Stretch(Limit::Lower) => motion.position = self.scene.limits.lower,
+            SiLimit::Stretch(Limit::Upper) => motion.position = self.scene.limits.upper,
+            SiLimit::Breakdown => {}
+        }
     }
 
     /// What the quantities are computed with, and the present stage.

@@ -1,0 +1,52 @@
+//! The actuator in nondimensional numbers, worked out once for each change of what describes it.
+
+use std::cell::Cell;
+
+use super::SiScene;
+use crate::actuator::device::{Device, Source};
+use crate::actuator::scales::{Scales, SiDevice};
+
+/// What the host has described.
+type Described = (SiDevice, [f64; 3], Source);
+
+/// An actuator in nondimensional numbers and their units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Folded {
+    of: Described,
+    pub device: Device,
+    pub scales: Scales,
+    /// The thickness of the stack before deformation, in m.
+    pub stack: f64,
+}
+
+/// The last one that was worked out. It follows from the scene and is no part of what that is: all
+/// are equal, and none is saved.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(Cell<Option<Folded>>);
+
+impl PartialEq for Memory {
+    fn eq(&self, _other: &Memory) -> bool {
+        true
+    }
+}
+
+impl SiScene {
+    /// The actuator in nondimensional numbers.
+    pub(super) fn folded(&self) -> Folded {
+        let of = (self.device, self.stiffening, self.source());
+        if let Some(known) = self.memory.0.get()
+            && known.of == of
+        {
+            return known;
+        }
+        let described = self.described();
+        let folded = Folded {
+            of,
+            device: described.nondimensional(),
+            scales: Scales::of(&described),
+            stack: described.layers * described.thickness,
+        };
+        self.memory.0.set(Some(folded));
+        folded
+    }
+}
