@@ -89,7 +89,7 @@ export function fromAddress(text, device) {
   for (const [key, number] of said) {
     const quantity = QUANTITIES.find((one) => one.key === key);
     if (!quantity) {
-      faults.push(`nothing is called ${key}`);
+      faults.push(`nothing is called ${key}; there is ${QUANTITIES.map((one) => one.key).join(", ")}`);
       continue;
     }
     const value = number.trim() === "" ? NaN : Number(number) * quantity.factor;

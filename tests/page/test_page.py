@@ -150,7 +150,7 @@ def test_the_address_is_the_state(visit):
 @pytest.mark.parametrize("bad, said", [
     ("voltage=loud", "Voltage is not a number"),
     ("thickness=-3", "Thickness of -3 µm is below 0.1 µm"),
-    ("colour=red", "nothing is called colour"),
+    ("colour=red", "nothing is called colour; there is voltage, prestress,"),
     ("density=", "Density is not a number"),
 ])  # fmt: skip
 def test_a_bad_address_is_said_and_the_rest_of_it_taken(visit, bad, said):
