@@ -7,3 +7,4 @@ mod host;
 mod motion;
 mod presets;
 mod refusals;
+mod scaling;

@@ -98,6 +98,26 @@ fn contradictory_choices_say_which_to_change() {
             vec![("J_m", 10.0), ("lambda_start", 4.0)],
             ["lambda_start = 4", "locking"],
         ),
+        (
+            vec![("current", 1e-6)],
+            ["current = 1e-6 A", "set source to current, or current to 0"],
+        ),
+        (
+            vec![("source", 2.0), ("charge_imposed", 1e-12)],
+            ["charge_imposed = 1e-12 C", "the source imposes the current"],
+        ),
+        (
+            vec![("voltage", 6e4)],
+            [
+                "voltage = 60000 V",
+                "set a value between -11000 and 11000 V",
+            ],
+        ),
+        (vec![("force", 2.0)], ["force = 2 N", "0.03 N"]),
+        (
+            vec![("k1", -0.9), ("k2", 0.2), ("lambda_max", 6.0)],
+            ["k1", "where the stretch is 3.25"],
+        ),
         (vec![("k1", -0.2)], ["k1", "lambda_max = 10"]),
         (
             vec![("lambda_start", 20.0)],
@@ -112,6 +132,39 @@ fn contradictory_choices_say_which_to_change() {
         let fault = host.instance.exit_initialization().expect_err("a fault");
         let text = format!("{fault:?}");
         assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+    }
+}
+
+/// A parameter with which there is no motion from where the actuator is: refused, and the motion
+/// goes on bit for bit as if nothing had been tried.
+#[test]
+fn a_parameter_that_does_not_go_with_the_present_is_refused() {
+    for interface in [Interface::CoSimulation, Interface::ModelExchange] {
+        let values = [("J_m", 60.0), ("lambda_start", 1.5), ("lambda_max", 3.0)];
+        let mut host = Host::initializing(interface, &values);
+        let mut undisturbed = Host::initializing(interface, &values);
+        for host in [&mut host, &mut undisturbed] {
+            host.instance.exit_initialization().expect("a start");
+            if interface == Interface::CoSimulation {
+                host.step(1e-7);
+            }
+        }
+        for (name, value) in [("J_m", 0.5), ("k1", -3.0)] {
+            let before = host.get(name);
+            let fault = host.set(name, value).expect_err(name);
+            assert!(
+                fault.text.contains(&format!("{name} = {value}")),
+                "{fault:?}"
+            );
+            assert!(fault.text.contains("stretch 1."), "{fault:?}");
+            assert_eq!(host.get(name), before);
+        }
+        if interface == Interface::CoSimulation {
+            host.step(3e-7);
+            undisturbed.step(3e-7);
+        }
+        let [ours, theirs] = [&host, &undisturbed].map(|host| host.get("lambda").to_bits());
+        assert_eq!(ours, theirs);
     }
 }
 
