@@ -21,6 +21,8 @@ pub type Solve = fn(&Case, f64, &mut Vec<Pair>) -> Result<(), String>;
 pub struct Method {
     pub name: &'static str,
     pub solve: Solve,
+    /// What comes before the motion and is not of it: what it takes is taken off.
+    pub idle: Option<Solve>,
     /// Tolerances from 10^−first to 10^−last.
     pub exponents: [i32; 2],
     /// An error above this many tolerances is none of the method's good ones.
@@ -65,14 +67,17 @@ fn sweep(method: &Method, case: &Case, least: Duration) {
             row.print();
             continue;
         }
+        let mut time = |solve: Solve| {
+            seconds_per_call(least, || {
+                states.clear();
+                let done = solve(case, tolerance, &mut states);
+                assert!(std::hint::black_box(done).is_ok());
+            })
+        };
         let seconds = if single > LONGEST {
             single.as_secs_f64()
         } else {
-            seconds_per_call(least, || {
-                states.clear();
-                let done = (method.solve)(case, tolerance, &mut states);
-                assert!(std::hint::black_box(done).is_ok());
-            })
+            time(method.solve) - method.idle.map_or(0.0, &mut time)
         };
         row.nanoseconds = Some(1e9 * seconds / case.end());
         row.print();

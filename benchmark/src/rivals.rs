@@ -15,6 +15,7 @@ const fn method(name: &'static str, last: i32, solve: crate::free::Solve) -> Met
     Method {
         name,
         solve,
+        idle: None,
         exponents: [3, last],
         allowed: f64::INFINITY,
     }

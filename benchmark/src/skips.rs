@@ -115,43 +115,43 @@ fn integration<'a>(case: &'a Case, motion: &'a Motion) -> Vec<Skip<'a>> {
     };
     vec![
         skip(
-            "surface effects folded into three coefficients",
+            "separate surface terms, combined into three coefficients",
             1e-9,
             Box::new(move || follow(integrated(1e-9), motion, TIME, 100.0)),
             Box::new(move || follow(integrated(1e-9), &unfolded, TIME, 100.0)),
         ),
         skip(
-            "terms that are zero (a formula of its own; not done)",
+            "terms that are zero, by a formula of their own (not built)",
             1e-9,
             Box::new(move || follow(integrated(1e-9), &Ideal(ideal), TIME, 100.0)),
             Box::new(move || follow(integrated(1e-9), &ideal, TIME, 100.0)),
         ),
         skip(
-            "no alternating voltage: no sine",
+            "the sine, where no voltage alternates",
             1e-9,
             Box::new(move || follow(integrated(1e-9), &constant, TIME, 100.0)),
             Box::new(move || follow(integrated(1e-9), &vanishing, TIME, 100.0)),
         ),
         skip(
-            "constant inputs: an orbit is run again for integrated",
+            "the integration, where an orbit repeats",
             1e-9,
             Box::new(move || follow(ours::start(1e-9), &constant, TIME, 10.0)),
             Box::new(move || follow(integrated(1e-9), &constant, TIME, 10.0)),
         ),
         skip(
-            "rest at an equilibrium",
+            "everything, at rest in an equilibrium (the other starts 1e-9 off)",
             1e-9,
             Box::new(move || follow(resting(1.0), &nothing, TIME, 1.0)),
             Box::new(move || follow(resting(1.0 + 1e-9).without_orbits(), &nothing, TIME, 1.0)),
         ),
         skip(
-            "loose tolerance: 8 nodes for 16",
+            "dense output, where only the end of a step is asked for (endpoint-only steps of 8 nodes beside dense ones of 16)",
             1e-6,
             Box::new(move || follow(ours::start(1e-6), motion, TIME, 100.0)),
             Box::new(move || follow(ours::start(1e-6).without_endpoint_steps(), motion, TIME, 100.0)),
         ),
         skip(
-            "extremes not recorded",
+            "extremes, where they are not recorded (endpoint-only steps beside dense ones that are searched)",
             1e-9,
             Box::new(move || follow(ours::start(1e-9), motion, TIME, 100.0)),
             Box::new(move || {
@@ -201,17 +201,17 @@ fn calls<'a>(case: &'a Case, constant: &'a Case) -> Vec<Skip<'a>> {
     let unchanged = move |host: &Host, _| host.set(&[0.5, 0.0, 0.0, 0.0], 0);
     vec![
         skip(
-            "inputs unchanged: answered from the segment",
+            "a restart, where the inputs are unchanged",
             Box::new(move || plain(constant)),
             Box::new(move || run(constant, |_| {}, &nudged)),
         ),
         skip(
-            "inputs set to what they are",
+            "a restart, where the inputs are set to what they are",
             Box::new(move || run(constant, |_| {}, &unchanged)),
             Box::new(move || run(constant, |_| {}, &nudged)),
         ),
         skip(
-            "energy and thresholds not read",
+            "energy and thresholds, where they are not read",
             Box::new(move || plain(case)),
             Box::new(move || {
                 run(case, |_| {}, &|host, _| {
@@ -222,7 +222,7 @@ fn calls<'a>(case: &'a Case, constant: &'a Case) -> Vec<Skip<'a>> {
             }),
         ),
         skip(
-            "log off",
+            "the log, which a step never writes",
             Box::new(move || plain(case)),
             Box::new(move || run(case, Host::log, &|_, _| {})),
         ),
@@ -268,6 +268,15 @@ impl LocalEquation for LocalUnfolded<'_> {
     #[inline(always)]
     fn load<N: Number>(&self, offset: N) -> Load<N> {
         self.motion.load(offset)
+    }
+
+    fn harmonic(&self) -> Option<[f64; 2]> {
+        self.motion.harmonic()
+    }
+
+    #[inline(always)]
+    fn load_with_sine<N: Number>(&self, offset: N, sine: N) -> Load<N> {
+        self.motion.load_with_sine(offset, sine)
     }
 
     #[inline(always)]
@@ -333,6 +342,15 @@ impl LocalEquation for LocalIdeal<'_> {
     #[inline(always)]
     fn load<N: Number>(&self, offset: N) -> Load<N> {
         self.0.load(offset)
+    }
+
+    fn harmonic(&self) -> Option<[f64; 2]> {
+        self.0.harmonic()
+    }
+
+    #[inline(always)]
+    fn load_with_sine<N: Number>(&self, offset: N, sine: N) -> Load<N> {
+        self.0.load_with_sine(offset, sine)
     }
 
     #[inline(always)]
