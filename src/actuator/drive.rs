@@ -158,6 +158,48 @@ impl Drive {
         (voltage + alternating, prestress)
     }
 
+    /// [`LocalDrive::load_series`] where the inputs have derivatives: from `shift` after they were
+    /// set on, the alternating voltage being there or not.
+    #[inline(never)]
+    fn series_of_polynomials(
+        &self,
+        alternates: bool,
+        shift: f64,
+        half: f64,
+    ) -> Option<[[f64; 5]; 2]> {
+        let (voltage, prestress) = (&self.voltage, &self.prestress);
+        if !alternates && voltage.is_of_degree(1) && prestress.is_of_degree(3) {
+            return None;
+        }
+        let about_middle = |input: &Polynomial| {
+            let mut input = *input;
+            input.shift(shift + half);
+            let mut power = 1.0;
+            input.term.map(|term| {
+                let size = term.abs() * power;
+                power *= half;
+                size
+            })
+        };
+        let mut series = [0.0; 9];
+        series[..=HIGHEST_DERIVATIVE].copy_from_slice(&about_middle(voltage));
+        if alternates {
+            let harmonic = &self.harmonic;
+            let turn = harmonic.frequency.abs() * half;
+            let mut size = harmonic.amplitude.abs();
+            for (k, sum) in series.iter_mut().enumerate() {
+                *sum += size;
+                size *= turn / (k + 1) as f64;
+            }
+        }
+        let squared = |k: usize| (0..=k).map(|i| series[i] * series[k - i]).sum();
+        let fourth = about_middle(prestress)[4];
+        Some([
+            std::array::from_fn(|k| squared(k + 4)),
+            [fourth, 0.0, 0.0, 0.0, 0.0],
+        ])
+    }
+
     /// The drive seen from `time`.
     #[must_use]
     #[inline(always)]
@@ -237,7 +279,9 @@ impl LocalDrive<'_> {
     #[inline(always)]
     pub fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
         if let Some(shift) = self.shift {
-            return self.series_of_polynomials(shift, half);
+            return self
+                .drive
+                .series_of_polynomials(self.angle.is_some(), shift, half);
         }
         self.angle?;
         // Of (|φ| + |φ_a| eᵗᵘ)², t being the turn of the voltage: each coefficient of 2eᵗᵘ is
@@ -257,42 +301,6 @@ impl LocalDrive<'_> {
             fourth * square * square * (1.0 / 1680.0),
         ];
         Some([series, [0.0; 5]])
-    }
-
-    /// The same where the inputs have derivatives.
-    #[inline(never)]
-    fn series_of_polynomials(&self, shift: f64, half: f64) -> Option<[[f64; 5]; 2]> {
-        let (voltage, prestress) = (&self.drive.voltage, &self.drive.prestress);
-        if self.angle.is_none() && voltage.is_of_degree(1) && prestress.is_of_degree(3) {
-            return None;
-        }
-        let about_middle = |input: &Polynomial| {
-            let mut input = *input;
-            input.shift(shift + half);
-            let mut power = 1.0;
-            input.term.map(|term| {
-                let size = term.abs() * power;
-                power *= half;
-                size
-            })
-        };
-        let mut series = [0.0; 9];
-        series[..=HIGHEST_DERIVATIVE].copy_from_slice(&about_middle(voltage));
-        if self.angle.is_some() {
-            let harmonic = &self.drive.harmonic;
-            let turn = harmonic.frequency.abs() * half;
-            let mut size = harmonic.amplitude.abs();
-            for (k, sum) in series.iter_mut().enumerate() {
-                *sum += size;
-                size *= turn / (k + 1) as f64;
-            }
-        }
-        let squared = |k: usize| (0..=k).map(|i| series[i] * series[k - i]).sum();
-        let fourth = about_middle(prestress)[4];
-        Some([
-            std::array::from_fn(|k| squared(k + 4)),
-            [fourth, 0.0, 0.0, 0.0, 0.0],
-        ])
     }
 
     /// What the voltage may be for a while, by size.

@@ -198,8 +198,9 @@ impl LocalEquation for LocalMotion<'_> {
             cubic,
             quintic,
         } = self.coefficients;
-        // Both times λ⁶.
-        let sixth = square * square * square;
+        // Both times λ⁶, which is worked out as in `sensitivity`.
+        let cube = square * state.position;
+        let sixth = cube * cube;
         let stiffness = 5.0
             + sixth
                 * (linear.abs()

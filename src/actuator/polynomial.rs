@@ -23,6 +23,7 @@ impl Polynomial {
     }
 
     /// The input with its value replaced.
+    #[inline]
     pub fn set_value(&mut self, value: f64) {
         self.term[0] = value;
     }
@@ -77,6 +78,7 @@ impl Polynomial {
 
     /// The value at the moment in which the input was set.
     #[must_use]
+    #[inline]
     pub fn value(&self) -> f64 {
         self.term[0]
     }

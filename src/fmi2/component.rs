@@ -166,45 +166,48 @@ pub fn free<T>(owned: Box<T>) {
     });
 }
 
-/// Runs `body` on the component behind the pointer, if the phase permits the
-/// call: the one way from C into the instance. No panic leaves it.
+/// Runs `body` on the component behind the pointer, if the phase permits the call: the way from C
+/// into the instance. No panic leaves it.
 #[inline(always)]
 pub fn guarded<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
-    body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
+    mut body: impl FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>,
 ) -> fmi2Status {
-    guarded_but_for(component, function, call, |_| Ok(false), body)
+    guarded_call(component, function, call, &mut body)
 }
 
-/// The same, where `at_once` may have done the call without any arithmetic: it compares and
-/// copies only, and runs in the host's floating-point environment, which costs more to find out
-/// than such a call takes. It returns whether it has done it; if not, it has changed nothing.
-#[inline(always)]
-pub fn guarded_but_for<M: Model>(
+/// What a call does, as one type for all calls.
+type Body<'a, M> = &'a mut dyn FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>;
+
+/// [`guarded`] for all calls of a model: once in the binary.
+#[inline(never)]
+fn guarded_call<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
-    at_once: impl FnOnce(&mut Component<M>) -> Result<bool, Fault>,
+    body: Body<M>,
+) -> fmi2Status {
+    guarded_in_place(component, function, call, body)
+}
+
+/// [`guarded`], the guard being compiled into the caller: for calls that must be fast.
+#[inline(always)]
+pub fn guarded_in_place<M: Model>(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
     body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
 ) -> fmi2Status {
-    // SAFETY: a component that is not null comes from `fmi2Instantiate`, was
-    // not freed, and is used by one call at a time: the host owes it to us
-    // (FMI 2.0, sections 2.1.6 and 2.1.7).
-    let Some(component) = (unsafe { component.cast::<Component<M>>().as_mut() }) else {
+    // SAFETY: see `behind`.
+    let Some(component) = (unsafe { behind::<M>(component) }) else {
         return fmi2Status_fmi2Error;
     };
     if let Err(fault) = component.instance.check(call) {
         return component.host.refuse(function, fault);
     }
-    let outcome = contained(|| {
-        if at_once(component)? {
-            return Ok(None);
-        }
-        computing(|| body(component))
-    });
-    match outcome {
+    match contained(|| computing(|| body(component))) {
         Ok(None) => fmi2Status_fmi2OK,
         Ok(Some(event)) => component.host.announce(function, event),
         Err(fault) => {
@@ -214,6 +217,32 @@ pub fn guarded_but_for<M: Model>(
             component.host.refuse(function, fault)
         }
     }
+}
+
+/// Does a call without any arithmetic, where `at_once` can: it compares and copies only, and
+/// cannot panic. It runs in the host's floating-point environment, which costs more to find out
+/// than such a call takes. Returns whether the call is done; if not, nothing has changed.
+#[inline(always)]
+pub fn done_at_once<M: Model>(
+    component: fmi2Component,
+    call: Call,
+    at_once: impl FnOnce(&mut Instance<M>) -> bool,
+) -> bool {
+    // SAFETY: see `behind`.
+    match unsafe { behind::<M>(component) } {
+        Some(component) => component.instance.permits(call) && at_once(&mut component.instance),
+        None => false,
+    }
+}
+
+/// The component behind a pointer, if it is not null.
+///
+/// # Safety
+/// One that is not null comes from `fmi2Instantiate`, was not freed, and is used by one call at
+/// a time: the host owes it to us (FMI 2.0, sections 2.1.6 and 2.1.7).
+unsafe fn behind<'a, M: Model>(component: fmi2Component) -> Option<&'a mut Component<M>> {
+    // SAFETY: the caller's promise.
+    unsafe { component.cast::<Component<M>>().as_mut() }
 }
 
 #[cfg(test)]

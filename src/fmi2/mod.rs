@@ -33,10 +33,10 @@ use libc::c_char;
 
 use crate::instance::{Call, Fault, Instance, Interface, Type};
 use crate::model::Model;
-use component::{Component, Host, free, guarded, guarded_but_for, instantiated};
+use component::{Component, Host, done_at_once, free, guarded, guarded_in_place, instantiated};
 pub use exchange::*;
 pub use export::EXPORTED_NAMES;
-use pointers::{slice, slice_mut, text};
+use pointers::{readable, slice, slice_mut, text, writable};
 pub use state::*;
 pub use stepping::*;
 
@@ -207,9 +207,10 @@ macro_rules! getter {
                 // SAFETY: see the head of this file.
                 let values = unsafe { slice_mut(value, nvr, "value") }?;
                 let convert: fn(f64) -> $value = $convert;
-                component.instance.get($type, references, |place, number| {
-                    values[place] = convert(number)
-                })?;
+                // One function for all types.
+                let store: &mut dyn FnMut(usize, f64) =
+                    &mut |place, number| values[place] = convert(number);
+                component.instance.get($type, references, store)?;
                 Ok(None)
             })
         }
@@ -218,50 +219,99 @@ macro_rules! getter {
 
 /// The setter of one type; `$convert` makes our values of its.
 macro_rules! setter {
-    ($function:ident, $value:ty, $type:expr, $convert:expr) => {
-        pub unsafe extern "C" fn $function<M: Model>(
+    ($visible:vis $function:ident, $name:literal, $value:ty, $type:expr, $convert:expr) => {
+        $visible unsafe extern "C" fn $function<M: Model>(
             c: fmi2Component,
             vr: *const fmi2ValueReference,
             nvr: usize,
             value: *const $value,
         ) -> fmi2Status {
-            let convert: fn($value) -> f64 = $convert;
-            let given = || {
+            guarded::<M>(c, $name, Call::Set, |component| {
                 // SAFETY: see the head of this file.
                 let references = unsafe { slice(vr, nvr, "vr") }?;
                 // SAFETY: see the head of this file.
                 let values = unsafe { slice(value, nvr, "value") }?;
-                Ok::<_, Fault>((references, move |place: usize| convert(values[place])))
-            };
-            guarded_but_for::<M>(
-                c,
-                stringify!($function),
-                Call::Set,
-                |component| {
-                    let (references, value) = given()?;
-                    Ok(component.instance.set_held($type, references, value))
-                },
-                |component| {
-                    let (references, value) = given()?;
-                    component.instance.set($type, references, value)?;
-                    Ok(None)
-                },
-            )
+                let convert: fn($value) -> f64 = $convert;
+                // One function for all types.
+                let value: &dyn Fn(usize) -> f64 = &|place| convert(values[place]);
+                component.instance.set($type, references, value)?;
+                Ok(None)
+            })
         }
     };
 }
 
-getter!(fmi2GetReal, fmi2Real, Type::Real, |number| number);
 getter!(fmi2GetInteger, fmi2Integer, Type::Integer, |number| number
     as fmi2Integer);
 getter!(fmi2GetBoolean, fmi2Boolean, Type::Boolean, |number| number
     as fmi2Boolean);
 getter!(fmi2GetString, fmi2String, Type::String, |_| std::ptr::null(
 ));
-setter!(fmi2SetReal, fmi2Real, Type::Real, |value| value);
-setter!(fmi2SetInteger, fmi2Integer, Type::Integer, f64::from);
-setter!(fmi2SetBoolean, fmi2Boolean, Type::Boolean, f64::from);
-setter!(fmi2SetString, fmi2String, Type::String, |_| 0.0);
+// Where an input does not keep its value, or is none.
+setter!(set_real, "fmi2SetReal", fmi2Real, Type::Real, |value| value);
+setter!(pub fmi2SetInteger, "fmi2SetInteger", fmi2Integer, Type::Integer, f64::from);
+setter!(pub fmi2SetBoolean, "fmi2SetBoolean", fmi2Boolean, Type::Boolean, f64::from);
+setter!(pub fmi2SetString, "fmi2SetString", fmi2String, Type::String, |_| 0.0);
+
+pub unsafe extern "C" fn fmi2GetReal<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    let at_once = |instance: &mut Instance<M>| {
+        // SAFETY: see the head of this file.
+        match unsafe { (readable(vr, nvr), writable(value, nvr)) } {
+            (Some(&[reference]), Some([value])) => instance.get_stored(reference, value),
+            _ => false,
+        }
+    };
+    if done_at_once::<M>(c, Call::Get, at_once) {
+        return fmi2Status_fmi2OK;
+    }
+    // SAFETY: see the head of this file.
+    unsafe { get_real::<M>(c, vr, nvr, value) }
+}
+
+/// [`fmi2GetReal`] where something is to be worked out.
+#[inline(never)]
+unsafe fn get_real<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    guarded_in_place::<M>(c, "fmi2GetReal", Call::Get, |component| {
+        // SAFETY: see the head of this file.
+        let references = unsafe { slice(vr, nvr, "vr") }?;
+        // SAFETY: see the head of this file.
+        let values = unsafe { slice_mut(value, nvr, "value") }?;
+        let store = |place: usize, number| values[place] = number;
+        component.instance.get(Type::Real, references, store)?;
+        Ok(None)
+    })
+}
+
+pub unsafe extern "C" fn fmi2SetReal<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    let at_once = |instance: &mut Instance<M>| {
+        // SAFETY: see the head of this file.
+        match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
+            (Some(&[reference]), Some(&[value])) => instance.set_held(reference, value),
+            (Some(references), Some(values)) => instance.set_all_held(references, values),
+            _ => false,
+        }
+    };
+    if done_at_once::<M>(c, Call::Set, at_once) {
+        return fmi2Status_fmi2OK;
+    }
+    // SAFETY: see the head of this file.
+    unsafe { set_real::<M>(c, vr, nvr, value) }
+}
 
 // ---- Directional derivatives ----
 

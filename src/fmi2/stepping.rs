@@ -2,7 +2,7 @@
 
 use fmi::fmi2::binding::*;
 
-use super::component::guarded;
+use super::component::{guarded, guarded_in_place};
 use super::pointers::{place, slice, slice_mut};
 use crate::instance::{Call, Fault};
 use crate::model::Model;
@@ -65,7 +65,7 @@ pub unsafe extern "C" fn fmi2DoStep<M: Model>(
     communicationStepSize: fmi2Real,
     _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
 ) -> fmi2Status {
-    guarded::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
+    guarded_in_place::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
         component
             .instance
             .do_step(currentCommunicationPoint, communicationStepSize)

@@ -169,6 +169,7 @@ impl<M: Model> Instance<M> {
 }
 
 /// The number of a state to which a state variable belongs.
+#[inline]
 pub(super) fn state_component<M: Model>(state: &mut M::State, reference: u32) -> Option<&mut f64> {
     let place = M::STATES.iter().position(|state| *state == reference)?;
     M::component(state, place)

@@ -106,11 +106,18 @@ impl<M: Model> Instance<M> {
     }
 
     /// Whether the standard allows this call at present.
+    #[must_use]
+    #[inline]
+    pub fn permits(&self, call: Call) -> bool {
+        self.phase.permits(call) && call.is_part_of(self.interface)
+    }
+
+    /// The same, and why not.
     ///
     /// # Errors
     /// Error where it does not, Fatal after a fatal error.
     pub fn check(&self, call: Call) -> Result<(), Fault> {
-        if self.phase.permits(call) && call.is_part_of(self.interface) {
+        if self.permits(call) {
             Ok(())
         } else {
             Err(self.refusal(call))

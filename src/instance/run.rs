@@ -74,6 +74,15 @@ impl<M: Model> Run<M> {
         &self.motion
     }
 
+    /// The present state, where it lies stored and nothing has ended the motion.
+    #[inline]
+    pub(super) fn stored_state(&self) -> Option<M::State> {
+        match self.collapse {
+            None => self.motion.stored_state(),
+            Some(_) => None,
+        }
+    }
+
     /// Whether and when the actuator has collapsed.
     #[must_use]
     pub fn collapse(&self) -> Option<&Collapse<M::Limit>> {

@@ -102,13 +102,16 @@ impl<M: Model> Instance<M> {
         references: &[u32],
         mut store: impl FnMut(usize, f64),
     ) -> Result<(), Fault> {
-        for &reference in references {
-            typed::<M>(reference, wanted)?;
+        // All of them are looked at before one is stored.
+        if references.len() > 1 {
+            for &reference in references {
+                typed::<M>(reference, wanted)?;
+            }
         }
         let view = self.view();
         let mut all_numbers = true;
         for (place, &reference) in references.iter().enumerate() {
-            let value = match M::VARIABLES[reference as usize].access {
+            let value = match typed::<M>(reference, wanted)?.access {
                 Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
                 Access::Setting { get, .. } => get(view.scene),
             };
@@ -124,47 +127,72 @@ impl<M: Model> Instance<M> {
         Err(Fault::discard(format!("{why}; try a shorter step")))
     }
 
-    /// Sets inputs, where all of them keep their values between communication points. Only
-    /// compares and copies: no arithmetic is done, and no floating-point comparison. Returns
-    /// whether they have been set; if not, nothing has changed, and [`Instance::set`] is to be
-    /// called.
+    /// Reads a state, where the motion stands at one that lies stored. Only compares and copies: no
+    /// arithmetic is done, and no floating-point comparison. Returns whether it has been read; if
+    /// not, nothing is stored, and [`Instance::get`] is to be called.
     #[inline]
-    pub fn set_held(
-        &mut self,
-        wanted: Type,
-        references: &[u32],
-        value: impl Fn(usize) -> f64,
-    ) -> bool {
-        if !M::inputs_are_held(&self.scene) {
+    pub fn get_stored(&self, reference: u32, value: &mut f64) -> bool {
+        let Course::Run(run) = &self.course else {
             return false;
+        };
+        let Some(mut state) = run.stored_state() else {
+            return false;
+        };
+        let component = state_component::<M>(&mut state, reference);
+        if let Some(component) = &component {
+            *value = **component;
         }
-        for (place, &reference) in references.iter().enumerate() {
-            let may_be_set = M::VARIABLES
-                .get(reference as usize)
-                .is_some_and(|variable| {
-                    variable.is_input() && wanted.is_of(variable) && variable.contains(value(place))
-                });
-            if !may_be_set {
-                return false;
-            }
-        }
+        component.is_some()
+    }
+
+    /// Sets an input, where all of them keep their values between communication points. Only
+    /// compares and copies: no arithmetic is done, and no floating-point comparison. Returns
+    /// whether it has been set; if not, nothing has changed, and [`Instance::set`] is to be called.
+    #[inline]
+    pub fn set_held(&mut self, reference: u32, value: f64) -> bool {
+        let Some(of) = self.held_input(reference, value) else {
+            return false;
+        };
         if let Some(time) = self.now() {
             M::begin_inputs(&mut self.scene, time);
         }
-        let mut changed = false;
-        for (place, &reference) in references.iter().enumerate() {
-            if let Access::Input { of, .. } = M::VARIABLES[reference as usize].access {
-                let (input, value) = (of(&mut self.scene), value(place));
-                if input.value().to_bits() != value.to_bits() {
-                    *input = Polynomial::constant(value);
-                    changed = true;
-                }
-            }
-        }
-        if changed {
+        let input = of(&mut self.scene);
+        if input.value().to_bits() != value.to_bits() {
+            // Its derivatives are 0 as it is.
+            input.set_value(value);
             self.changed();
         }
         true
+    }
+
+    /// [`Instance::set_held`] of some inputs, or of none.
+    #[inline(never)]
+    pub fn set_all_held(&mut self, references: &[u32], values: &[f64]) -> bool {
+        let given = references.iter().copied().zip(values.iter().copied());
+        given
+            .clone()
+            .all(|(reference, value)| self.held_input(reference, value).is_some())
+            && given
+                .into_iter()
+                .all(|(reference, value)| self.set_held(reference, value))
+    }
+
+    /// The input that may be set to this value, where all of them keep theirs.
+    #[inline]
+    fn held_input(
+        &self,
+        reference: u32,
+        value: f64,
+    ) -> Option<fn(&mut M::Scene) -> &mut Polynomial> {
+        let variable = M::VARIABLES.get(reference as usize)?;
+        match variable.access {
+            Access::Input { of, .. }
+                if M::inputs_are_held(&self.scene) && variable.contains(value) =>
+            {
+                Some(of)
+            }
+            _ => None,
+        }
     }
 
     /// Sets the variables of type `wanted` with these value references. In model

@@ -191,6 +191,13 @@ pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     /// The present time of the model.
     fn time(&self) -> &Double;
 
+    /// The present state, where it lies stored as finite numbers: found out and copied without
+    /// floating-point operations.
+    #[inline]
+    fn stored_state(&self) -> Option<M::State> {
+        None
+    }
+
     /// Whether the numbers fit together as those of a motion of the scene: to be checked where
     /// they do not come from this process.
     fn is_valid(&self, scene: &M::Scene, tolerance: f64) -> bool;

@@ -144,10 +144,13 @@ impl Model for Nondimensional {
         state.position.is_finite() && state.rate.is_finite()
     }
 
+    #[inline]
     fn component(state: &mut State, place: usize) -> Option<&mut f64> {
-        [&mut state.position, &mut state.rate]
-            .into_iter()
-            .nth(place)
+        match place {
+            0 => Some(&mut state.position),
+            1 => Some(&mut state.rate),
+            _ => None,
+        }
     }
 
     fn second_order(state: &State) -> State {
@@ -250,6 +253,11 @@ impl Motion<Nondimensional> for Trajectory {
     #[inline]
     fn time(&self) -> &Double {
         Trajectory::time(self)
+    }
+
+    #[inline]
+    fn stored_state(&self) -> Option<State> {
+        Trajectory::stored_state(self)
     }
 
     fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {

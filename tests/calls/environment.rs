@@ -86,6 +86,20 @@ fn co_simulation(environment: u32) -> Vec<u64> {
         ("phi", 1.5),
     ];
     let mut time = -1.0;
+    // A state that lies stored, behind inputs that change at each step.
+    let states = ["lambda", "lambda_dot"].map(reference);
+    for k in 0..20 {
+        let voltage = 0.3 + 0.01 * f64::from(k % 7);
+        call(&|| host.set("phi", voltage));
+        call(&|| host.step(time, 0.01));
+        time += 0.01;
+        for state in &states {
+            let mut value = 0.0;
+            let get = || unsafe { fmi2GetReal(c, state, 1, &mut value) };
+            assert_eq!(within(environment, get), OK);
+            results.push(value.to_bits());
+        }
+    }
     for (name, value) in scenes {
         call(&|| host.set(name, value));
         if name == "S" {

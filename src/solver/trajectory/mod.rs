@@ -73,9 +73,25 @@ impl Trajectory {
         self
     }
 
+    /// The present state, where it is that at which a step has ended and none is kept.
+    #[must_use]
+    #[inline]
+    pub fn stored_state(&self) -> Option<State> {
+        self.history.is_empty().then_some(self.start)
+    }
+
     /// Starts anew from the present state: the equation has changed.
     #[inline]
     pub fn restart(&mut self) {
+        let after_short_step = self.restarts_at_every_step
+            && self.advances == 1
+            && self.method.trend.is_some()
+            && self.history.is_empty();
+        if after_short_step {
+            // It leaves nothing else behind.
+            self.advances = 0;
+            return;
+        }
         self.method.endpoint.restart();
         self.method.single.restart();
         self.start_from_present();
