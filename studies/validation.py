@@ -18,7 +18,7 @@ from typing import NamedTuple
 from device_scenes import PLAIN, REFERENCE, SCENES, device_scene
 from dielectric_actuator import Actuator, packed_fmu
 
-FMU = packed_fmu("DielectricElastomerActuatorSI")
+FMU = packed_fmu("si")
 TOLERANCES = (1e-10, 1e-12)
 """That of a host which asks for none, and a tight one."""
 

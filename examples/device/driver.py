@@ -31,7 +31,7 @@ from pack import pack_system
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("DielectricElastomerActuatorSI")
+FMU = packed_fmu("si")
 TARGETS = ((0.0, 100e-6), (8e-3, 350e-6), (16e-3, 50e-6), (24e-3, 200e-6))
 """From when on, in s, the controller is to hold which displacement, in m."""
 

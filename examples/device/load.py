@@ -38,7 +38,7 @@ from pack import pack_system
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("DielectricElastomerActuatorSI")
+FMU = packed_fmu("si")
 STOP_TIME = 10.24e-3
 STEPS = (80e-6, 40e-6, 20e-6, 10e-6, 5e-6)
 """Communication steps in s; the film alone swings in 810 µs."""

@@ -29,13 +29,13 @@ from film import FILM
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("DielectricElastomerActuatorSI")
+FMU = packed_fmu("si")
 REFERENCE = ROOT / "tests" / "reference" / "device" / "ac_steady_state.json"
 STRONG = {"voltage": 0.0, "V_ac": 4000.0, "eta": 5.0}
 """A damping ratio of .054: one steady state at each frequency."""
 
-WEAK = {"voltage": 0.0, "V_ac": 2500.0, "eta": 0.5}
-"""A damping ratio of .0054: two at some."""
+WEAK = {"voltage": 0.0, "V_ac": 2500.0, "eta": 0.8}
+"""A damping ratio of .0087: two at some."""
 
 SAMPLES = 64
 """Of one period of the voltage."""
@@ -85,7 +85,7 @@ def sweep(actuator: Actuator, frequencies: np.ndarray) -> np.ndarray:
     amplitudes = np.empty(len(frequencies))
     for number, frequency in enumerate(map(float, frequencies)):
         actuator.set({"f_ac": frequency})
-        actuator.advance(decay(WEAK["eta"], frequency, 1e-6))
+        actuator.advance(decay(WEAK["eta"], frequency, 1e-12))
         actuator.set({"extremes_window": number + 1})
         actuator.advance(1 / frequency)
         lowest, highest = actuator.get("lambda_lowest", "lambda_highest")
@@ -107,7 +107,7 @@ def draw(response: np.ndarray, exact: np.ndarray, up: np.ndarray, down: np.ndarr
     panels[2].plot(SWEEP, up, marker="^", markersize=4, label="frequency raised", **style.curve(0))
     panels[2].plot(SWEEP[::-1], down, marker="v", markersize=4, label="frequency lowered", **style.curve(1))
     panels[2].set(xlabel="frequency of the voltage in Hz", ylabel="amplitude of the stretch")
-    panels[2].set_title("(c)  hysteresis, 2.5 kV, η = 0.5 Pa s", loc="left")
+    panels[2].set_title("(c)  hysteresis, 2.5 kV, η = 0.8 Pa s", loc="left")
     panels[2].legend()
     return figure
 
