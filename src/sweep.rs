@@ -21,7 +21,7 @@ use crate::actuator::Ensemble;
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::double::Double;
-use crate::solver::ensemble::{self, Arrival, Motion};
+use crate::solver::ensemble::{self, Arrival, Member};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
@@ -49,7 +49,7 @@ pub struct Outcome {
 pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome, Failure>> {
     let motions: Vec<_> = scenes
         .iter()
-        .map(|scene| Motion {
+        .map(|scene| Member {
             equation: scene.motion(),
             start: scene.start,
             limits: scene.limits,

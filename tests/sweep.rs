@@ -3,7 +3,7 @@
 use dielectric_elastomer_actuator::actuator::Ensemble;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::double::Double;
-use dielectric_elastomer_actuator::solver::ensemble::{self, Motion};
+use dielectric_elastomer_actuator::solver::ensemble::{self, Member};
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;
@@ -86,7 +86,7 @@ fn scenes_of_all_kinds_come_out_in_their_order() {
 #[test]
 fn a_motion_next_to_rest_is_not_given_back() {
     let scene = alternating([0.0; 3], 1e-160, 0.1438);
-    let motion = Motion {
+    let motion = Member {
         equation: scene.motion(),
         start: scene.start,
         limits: scene.limits,

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 pub use super::polynomial::{HIGHEST_DERIVATIVE, Polynomial};
-use crate::solver::double::{Double, halves};
+use crate::solver::double::{Double, veltkamp_split};
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
@@ -46,8 +46,8 @@ impl Harmonic {
         let turns = (time.high * self.frequency) * (1.0 / std::f64::consts::TAU);
         if turns.abs() < EXACT_TURNS {
             let turns = turns.whole();
-            let [time_head, time_tail] = halves(time.high);
-            let [head, tail] = halves(self.frequency);
+            let [time_head, time_tail] = veltkamp_split(time.high);
+            let [head, tail] = veltkamp_split(self.frequency);
             let rest = (time_head * tail + (time_tail + time.low) * self.frequency) + self.phase;
             ((time_head * head - turns * PARTS[0]) - turns * PARTS[1]) + rest
         } else {
@@ -253,7 +253,7 @@ impl LocalDrive<'_> {
         self.voltage_with_sine(offset, angle.sin())
     }
 
-    /// The same where the sine is known.
+    /// Total voltage at `offset` after the origin, where the sine in it is known.
     #[inline(always)]
     pub fn voltage_with_sine<N: Number>(&self, offset: N, sine: N) -> N {
         let voltage = self.input(&self.drive.voltage, offset);

@@ -112,7 +112,7 @@ impl<M: Model> Instance<M> {
         self.phase.permits(call) && call.is_part_of(self.interface)
     }
 
-    /// The same, and why not.
+    /// Whether the standard allows this call at present, and why not.
     ///
     /// # Errors
     /// Error where it does not, Fatal after a fatal error.

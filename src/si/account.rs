@@ -28,7 +28,7 @@ pub struct SiAccount {
 struct Inputs {
     /// The input of the source.
     source: f64,
-    /// The same with the built-in voltage.
+    /// The input of the source with the built-in voltage.
     total: f64,
     force: f64,
 }

@@ -51,7 +51,7 @@ impl Course {
         }
     }
 
-    /// The same in place of this one: only where the motion becomes one of the other kind is
+    /// Makes a new motion in place of this one: only where the motion becomes one of the other kind is
     /// memory allocated.
     pub fn begin_anew(
         &mut self,

@@ -206,7 +206,7 @@ impl Motion<Si> for SiMotion {
             self.refold(scene);
         }
         let (begin, second) = (self.clock, self.scales.time);
-        let target = begin.plus(step).tightened();
+        let target = begin.plus(step).renormalized();
         let end = self.scales.time(target);
         loop {
             let rest = end.since(self.course.time());
@@ -224,7 +224,7 @@ impl Motion<Si> for SiMotion {
                 }
                 Ok(Progress::Stopped { limit, .. }) => {
                     let after = passed(end.since(self.course.time()));
-                    self.clock = begin.plus(after).tightened();
+                    self.clock = begin.plus(after).renormalized();
                     let limit = match limit {
                         coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
                         coupled::Event::Margin => {
@@ -242,7 +242,7 @@ impl Motion<Si> for SiMotion {
                 }
                 Err(failure) => {
                     let after = passed(end.since(self.course.time()));
-                    self.clock = begin.plus(after).tightened();
+                    self.clock = begin.plus(after).renormalized();
                     return Err(match failure {
                         Failure::SubstepTooShort { length, .. } => Failure::SubstepTooShort {
                             length: length * second,

@@ -152,7 +152,8 @@ impl View<'_, Si> {
         local.breakdown_margin(&local.load(0.0), &stage) * basis.scales.field
     }
 
-    /// The same as a part of the breakdown field; 1 where none is given.
+    /// By how much the true field may still grow until breakdown, as a part of the breakdown field;
+    /// 1 where none is given.
     pub(super) fn breakdown_margin_part(&self) -> f64 {
         let (basis, stage) = self.basis();
         let Some(breakdown) = basis.device.breakdown else {

@@ -1,4 +1,4 @@
-//! Double-length arithmetic: an unevaluated sum of two `f64`, about 32 digits.
+//! Double-double arithmetic: an unevaluated sum of two `f64`, about 32 digits.
 //!
 //! Origin: T. J. Dekker, "A floating-point technique for extending the
 //! available precision", Numer. Math. 18 (1971) 224–242; the sums are Knuth's.
@@ -11,7 +11,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A double-length number `high + low`. After all operations but [`Double::plus`], `low`
+/// A double-double number `high + low`. After all operations but [`Double::plus`], `low`
 /// is at most half an ulp of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Double {
@@ -59,7 +59,7 @@ impl Double {
     }
 
     /// `self + addend`, for a clock: each sum waits for a single operation of the last one.
-    /// What the roundings lose adds up in `low`; see [`Double::tightened`].
+    /// What the roundings lose adds up in `low`; see [`Double::renormalized`].
     #[must_use]
     #[inline]
     pub const fn plus(self, addend: f64) -> Double {
@@ -74,7 +74,7 @@ impl Double {
     /// [`Double::plus`] the roundings of a grown `low` might be seen.
     #[must_use]
     #[inline]
-    pub const fn tightened(self) -> Double {
+    pub const fn renormalized(self) -> Double {
         exact_sum(self.high, self.low)
     }
 
@@ -152,14 +152,14 @@ const fn exact_sum(a: f64, b: f64) -> Double {
 /// `const` nor fast on every processor).
 const fn exact_product(a: f64, b: f64) -> Double {
     let high = a * b;
-    let [a_high, a_low] = halves(a);
-    let [b_high, b_low] = halves(b);
+    let [a_high, a_low] = veltkamp_split(a);
+    let [b_high, b_low] = veltkamp_split(b);
     let low = ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low;
     Double { high, low }
 }
 
 /// `a` as a sum of two numbers of 26 bits, the larger one first (Veltkamp).
-pub(crate) const fn halves(a: f64) -> [f64; 2] {
+pub(crate) const fn veltkamp_split(a: f64) -> [f64; 2] {
     const FACTOR: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = FACTOR * a;
     let high = scaled - (scaled - a);
@@ -196,7 +196,7 @@ mod tests {
             let mut clock = Double::new(start);
             for _ in 0..1_000 {
                 clock = (0..1_000).fold(clock, |clock, _| clock.plus(step));
-                clock = clock.tightened();
+                clock = clock.renormalized();
             }
             let exact = Double::new(start).add(Double::new(step).scale(1e6));
             let error = clock.since(exact);

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use super::State;
+use super::roots::crossing;
 use super::segment::{PARTS, Segment};
 
 /// The range of positions inside which the motion is followed.
@@ -95,7 +96,7 @@ fn contact(segment: &Segment, level: f64, sign: f64) -> Option<f64> {
     for i in 0..PARTS {
         let (begin, end) = (i as f64 * part, (i + 1) as f64 * part);
         let [first, last] = [begin, end].map(|t| toward(segment, t));
-        let turn = || segment.crossing(begin, end, toward);
+        let turn = || crossing(begin, end, |t| toward(segment, t));
         // Nothing is gone through on the way back.
         let farthest = match first > 0.0 && last < 0.0 {
             true => turn(),
@@ -104,7 +105,7 @@ fn contact(segment: &Segment, level: f64, sign: f64) -> Option<f64> {
         };
         if over(segment, farthest) >= 0.0 {
             let nearest = if first < 0.0 { turn() } else { begin };
-            return Some(segment.crossing(nearest, farthest, over));
+            return Some(crossing(nearest, farthest, |t| over(segment, t)));
         }
     }
     None

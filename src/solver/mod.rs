@@ -10,6 +10,7 @@
 //! * [`segment`]: the polynomial that a step leaves behind;
 //! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
 //! * [`linearized`]: the motion beside a motion;
+//! * [`roots`]: zeros and minima; [`sine`]: that of lanes;
 //! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives.
 
 pub mod collocation;
@@ -27,8 +28,10 @@ pub mod linearized;
 pub mod number;
 pub mod orbit;
 mod outcome;
+pub mod roots;
 pub mod segment;
 mod short_step;
+pub mod sine;
 pub mod step_control;
 mod tables;
 pub mod trajectory;

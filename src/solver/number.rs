@@ -54,7 +54,7 @@ pub trait Parameter: Number {
     /// Whether it is 0 and stays it.
     fn is_nothing(self) -> bool;
 
-    /// The same with another value, where that is known better.
+    /// Its derivatives with another value, where that is known better.
     #[must_use]
     fn with_value(self, value: f64) -> Self;
 }

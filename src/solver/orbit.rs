@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::double::Double;
-use super::segment::ROUNDING;
+use super::segment::VALIDATION_TOLERANCE;
 
 /// The motion between two turning points of an autonomous, time-reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -32,7 +32,7 @@ impl Orbit {
 
     /// Whether `time` lies between the turning points, to rounding.
     pub fn holds(&self, time: Double) -> bool {
-        let rounding = ROUNDING * self.period.high;
+        let rounding = VALIDATION_TOLERANCE * self.period.high;
         time.since(self.first_turn) >= -rounding && self.second_turn.since(time) >= -rounding
     }
 

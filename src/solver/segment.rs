@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::collocation::Series;
+use super::roots::crossing;
 use super::tables::{Columns, GAUSS_16};
 
 /// Node pairs of the method whose segments are kept.
@@ -16,8 +17,9 @@ const TERMS: usize = 2 * PAIRS + 2;
 /// Parts of a segment in each of which the motion turns at most once.
 pub const PARTS: usize = 32;
 
-/// Numbers that differ by more than this part do not differ by rounding.
-pub const ROUNDING: f64 = 1e-6;
+/// Numbers that differ by more than this part do not differ by rounding: where stored numbers are
+/// validated.
+pub const VALIDATION_TOLERANCE: f64 = 1e-6;
 
 /// x(t) over one substep, u = t/half − 1 ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -98,8 +100,8 @@ impl Segment {
         let size = position.abs() + drift.abs() + self.bend();
         self.half > 0.0
             && size.is_finite()
-            && moved.abs() <= ROUNDING * size
-            && turned.abs() <= ROUNDING * (drift.abs() + self.bend())
+            && moved.abs() <= VALIDATION_TOLERANCE * size
+            && turned.abs() <= VALIDATION_TOLERANCE * (drift.abs() + self.bend())
     }
 
     /// Whether it begins in this state, bit for bit as the one before ends.
@@ -109,7 +111,7 @@ impl Segment {
 
     /// Whether the motion turns at `offset`, as far as that can be told.
     pub fn turns_at(&self, offset: f64) -> bool {
-        self.half * self.rate(offset).abs() <= ROUNDING * self.bend()
+        self.half * self.rate(offset).abs() <= VALIDATION_TOLERANCE * self.bend()
     }
 
     /// How far f can bend the motion, as a length.
@@ -197,42 +199,8 @@ impl Segment {
         (0..parts).filter_map(move |i| {
             let (begin, end) = (border(i), border(i + 1));
             let turns = self.rate(begin) * self.rate(end) < 0.0;
-            turns.then(|| self.position(self.crossing(begin, end, Segment::rate)))
+            turns.then(|| self.position(crossing(begin, end, |offset| self.rate(offset))))
         })
-    }
-
-    /// The offset in (`from`, `to`] at which `f` crosses zero, where it has
-    /// opposite signs at the two ends. Bisection with secant steps (the
-    /// "Illinois" rule of M. Dowell and P. Jarratt, BIT 11 (1971) 168–174), to
-    /// the last bit of the offset or to an exact zero.
-    #[must_use]
-    pub fn crossing(&self, from: f64, to: f64, f: impl Fn(&Segment, f64) -> f64) -> f64 {
-        let (mut a, mut b) = (from, to);
-        let (mut f_a, mut f_b) = (f(self, a), f(self, b));
-        if f_a == 0.0 {
-            return a;
-        }
-        // Each round at least halves a bracket every second time; 200 rounds
-        // are far beyond what 53 bits can take.
-        for _ in 0..200 {
-            if f_b == 0.0 || (b - a).abs() <= f64::EPSILON * b.abs() {
-                break;
-            }
-            let secant = b - f_b * (b - a) / (f_b - f_a);
-            let inside = (secant - a) * (secant - b) < 0.0;
-            let c = if inside { secant } else { 0.5 * (a + b) };
-            if c == a || c == b {
-                break;
-            }
-            let f_c = f(self, c);
-            if f_c * f_b < 0.0 {
-                (a, f_a) = (b, f_b);
-            } else {
-                f_a *= 0.5;
-            }
-            (b, f_b) = (c, f_c);
-        }
-        b
     }
 }
 
@@ -274,7 +242,7 @@ mod tests {
 
     #[test]
     fn a_crossing_is_found_to_the_last_bits() {
-        let root = cubic().crossing(0.0, 4.0, Segment::position);
+        let root = crossing(0.0, 4.0, |offset| cubic().position(offset));
         assert!((root - 1.0).abs() < 1e-15, "{root}");
     }
 }

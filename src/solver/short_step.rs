@@ -4,6 +4,8 @@
 //! one is kept but its end. A step that is short against the motion's own time needs no more
 //! than 4 nodes, whose end is of order 8. They fit one register, so that, unlike in
 //! [`super::collocation`], nothing is gained by folding them into pairs.
+//!
+//! Gain over an endpoint-only step of 8 nodes: two thirds of the instructions, the restart and the host's call included.
 
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};

@@ -58,6 +58,9 @@ pub struct Accepted<T> {
     pub factor: f64,
 }
 
+/// A step shorter than this part of what it was to be cannot go on.
+pub const SHORTEST: f64 = 1e-12;
+
 /// By what a step is shortened that says nothing about how long it may be.
 pub const HALVED: f64 = 0.5;
 

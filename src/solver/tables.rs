@@ -323,7 +323,7 @@ mod tests {
         check(&GAUSS_16);
     }
 
-    /// The same for f(u) = (1 + u)ⁿ.
+    /// Unpaired nodes: f(u) = (1 + u)ⁿ, every table against the integral done by hand.
     #[test]
     fn unpaired_nodes_integrate_powers_exactly() {
         let Unpaired {

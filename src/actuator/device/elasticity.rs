@@ -54,7 +54,7 @@ impl Locking {
         Locking::of(limit, |x| x.value())
     }
 
-    /// The same where J changes in a direction.
+    /// The roots and their derivatives where J changes in a direction.
     #[must_use]
     pub fn along(limit: Dual) -> Locking<Dual> {
         let j = limit.value();

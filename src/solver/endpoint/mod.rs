@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::double::Double;
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
 use super::number::Number;
-use super::step_control::{HALVED, StepControl, factor, shortened};
+use super::step_control::{HALVED, SHORTEST, StepControl, factor, shortened};
 use super::{Equation, LocalEquation, State};
 
 mod matrix;
@@ -32,7 +32,7 @@ pub use way::{End, Way};
 /// The end of a step misses less than this part of the estimate below. Measured on driven motions of
 /// all kinds, near escape too (`tests/stress`): the error of a whole motion stays below half a
 /// tolerance times what the motion makes of it.
-const NEGLECTED: f64 = 2e4;
+const NEGLECTED_WITH_PLAN: f64 = 2e4;
 
 /// What the iteration of the stages may leave, as a multiple of what a step may miss: it adds up from
 /// step to step less than that.
@@ -61,9 +61,6 @@ const STEEPEST: f64 = 2.0;
 
 /// Fewer steps do not pay for the matrices of a slope, unless they come again.
 const FEW: f64 = 3.0;
-
-/// A step shorter than this part of the way or the time scale cannot go on.
-const SHORTEST: f64 = 1e-12;
 
 /// A load whose period is less than this part of the time scale is left to 16 nodes, which need
 /// half as many steps.
@@ -298,7 +295,7 @@ impl EndpointSteps {
                 let tail = sixth.abs() + seventh.abs();
                 let swing = largest::<S>(displacement);
                 let size = square * largest::<S>(g).max(slope.abs() * swing);
-                let allowed = NEGLECTED * end_tolerance * scale;
+                let allowed = NEGLECTED_WITH_PLAN * end_tolerance * scale;
                 let error = tail * tail / (size * allowed).max(f64::MIN_POSITIVE);
                 if error <= 1.0 {
                     Ok((stages, [moved, gained, swing], error))

@@ -1,6 +1,8 @@
 //! Endpoint-only steps over a single way, after which the equation changes: each is solved alone.
 //!
-//! A plan of equal steps would serve once only.
+//! A plan of equal steps would serve once only. What is gained by none, where the voltage changes at each
+//! communication point: with plans, ways of up to three time scales take 1.3 to 2.6 times the instructions, ways of six
+//! 1.05 to 1.5 times. Only ways of some twenty time scales at loose tolerances take fewer, by a fifth at 1e-6.
 
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
@@ -10,15 +12,12 @@ use crate::solver::collocation::{Guess, Series, Substep, Task, solve_by_8, solve
 use crate::solver::double::Double;
 use crate::solver::iteration::Diverged;
 use crate::solver::segment::PAIRS as MOST_PAIRS;
-use crate::solver::step_control::{Accepted, HALVED, StepControl, first_accepted};
+use crate::solver::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use crate::solver::{Equation, LocalEquation};
 
 /// The end of a step misses less than this part of the estimate below: 16 to 26 000 times less on
 /// an AC motion near resonance, 2000 times in the mean.
-const NEGLECTED: f64 = 1000.0;
-
-/// A step shorter than this part of what it was to be cannot go on.
-const SHORTEST: f64 = 1e-12;
+const NEGLECTED_WITHOUT_PLAN: f64 = 1000.0;
 
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
@@ -219,5 +218,5 @@ fn end_error<const P: usize>(step: &Substep<P>) -> f64 {
     let size = even[0].abs() + odd[0].abs() + even[1].abs();
     let tail = step.tail();
     // Nothing at all where f vanishes.
-    tail * tail / size.max(f64::MIN_POSITIVE) / NEGLECTED
+    tail * tail / size.max(f64::MIN_POSITIVE) / NEGLECTED_WITHOUT_PLAN
 }

@@ -20,9 +20,9 @@ use crate::solver::{Equation, LocalEquation, State};
 mod multistep;
 mod turning_point;
 
-use multistep::{BLOCK, Motions, ORDER, STABLE};
+use multistep::{BLOCK, LaneStates, ORDER, STABLE};
 
-/// Motions that are followed at once.
+/// LaneStates that are followed at once.
 pub const LANES: usize = 8;
 
 /// Numbers of all lanes.
@@ -84,7 +84,7 @@ pub trait Packed<N: Number> {
 
 /// A motion to be followed.
 #[derive(Clone, Copy, Debug)]
-pub struct Motion<E> {
+pub struct Member<E> {
     /// Its equation.
     pub equation: E,
     /// Its state at the start.
@@ -112,7 +112,7 @@ pub struct Arrival {
 pub fn follow<F: Ensemble>(
     level: Level,
     ensemble: &mut F,
-    motions: &[Motion<F::Equation>],
+    motions: &[Member<F::Equation>],
     [start, end]: [Double; 2],
     tolerance: f64,
 ) -> Vec<Result<Arrival, Failure>> {
@@ -124,7 +124,7 @@ pub fn follow<F: Ensemble>(
         extremes: Extremes::at(0.0),
         progress: Progress::Whole,
     };
-    let mut course = Course {
+    let mut queue = Queue {
         level,
         motions,
         start,
@@ -133,10 +133,10 @@ pub fn follow<F: Ensemble>(
         next: 0,
         arrivals: vec![Ok(blank); motions.len()],
     };
-    let mut packed = Motions::IDLE;
+    let mut packed = LaneStates::IDLE;
     let mut lanes: [Option<Lane>; LANES] = std::array::from_fn(|_| None);
     for (index, lane) in lanes.iter_mut().enumerate() {
-        *lane = course.board(ensemble, &mut packed, index);
+        *lane = queue.take_next(ensemble, &mut packed, index);
     }
     while lanes.iter().any(Option::is_some) {
         let begin = (packed.position, packed.rate);
@@ -149,16 +149,16 @@ pub fn follow<F: Ensemble>(
                 position: begin.0[index],
                 rate: begin.1[index],
             };
-            if !course.judge(lane, ensemble, &mut packed, index, state) {
-                *place = course.board(ensemble, &mut packed, index);
+            if !queue.judge(lane, ensemble, &mut packed, index, state) {
+                *place = queue.take_next(ensemble, &mut packed, index);
             }
         }
     }
-    course.arrivals
+    queue.arrivals
 }
 
 /// Eight lanes gain by AVX-512 also where it is not dispatched to otherwise, since one motion does not.
-fn go<F: Ensemble>(level: Level, ensemble: &mut F, motions: &mut Motions) {
+fn go<F: Ensemble>(level: Level, ensemble: &mut F, motions: &mut LaneStates) {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx512) = level.as_avx512() {
         return avx512.vectorize(
@@ -170,7 +170,7 @@ fn go<F: Ensemble>(level: Level, ensemble: &mut F, motions: &mut Motions) {
 }
 
 #[inline(always)]
-fn go_with<S: Simd, F: Ensemble>(simd: S, ensemble: &mut F, motions: &mut Motions) {
+fn go_with<S: Simd, F: Ensemble>(simd: S, ensemble: &mut F, motions: &mut LaneStates) {
     motions.go_on();
     let mut packed = ensemble.pack::<S, f64x8<S>>(simd);
     motions.go(simd, &mut packed);
@@ -192,10 +192,10 @@ struct Lane {
     starts: u32,
 }
 
-/// What all lanes have in common.
-struct Course<'a, E> {
+/// The members that wait, and what all lanes have in common.
+struct Queue<'a, E> {
     level: Level,
-    motions: &'a [Motion<E>],
+    motions: &'a [Member<E>],
     start: Double,
     end: Double,
     tolerance: f64,
@@ -204,16 +204,16 @@ struct Course<'a, E> {
     arrivals: Vec<Result<Arrival, Failure>>,
 }
 
-impl<E: Equation> Course<'_, E> {
+impl<E: Equation> Queue<'_, E> {
     /// Takes the next motion that a lane can follow into a lane; those before it are followed
     /// alone.
-    fn board<F: Ensemble<Equation = E>>(
+    fn take_next<F: Ensemble<Equation = E>>(
         &mut self,
         ensemble: &mut F,
-        packed: &mut Motions,
+        packed: &mut LaneStates,
         index: usize,
     ) -> Option<Lane> {
-        while let Some(&Motion {
+        while let Some(&Member {
             ref equation,
             start,
             ..
@@ -253,12 +253,12 @@ impl<E: Equation> Course<'_, E> {
         &mut self,
         lane: &mut Lane,
         ensemble: &mut F,
-        packed: &mut Motions,
+        packed: &mut LaneStates,
         index: usize,
         state: State,
         free: f64,
     ) -> bool {
-        let &Motion {
+        let &Member {
             ref equation,
             limits,
             ..
@@ -309,7 +309,7 @@ impl<E: Equation> Course<'_, E> {
         &mut self,
         lane: &mut Lane,
         ensemble: &mut F,
-        packed: &mut Motions,
+        packed: &mut LaneStates,
         index: usize,
         state: State,
     ) -> bool {
@@ -366,7 +366,7 @@ impl<E: Equation> Course<'_, E> {
     /// Follows the rest of a motion from `state` on alone, and notes where it came to. Returns
     /// false: the lane is free.
     fn go_alone(&mut self, lane: &Lane, state: State) -> bool {
-        let &Motion {
+        let &Member {
             ref equation,
             limits,
             ..

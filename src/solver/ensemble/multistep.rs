@@ -120,7 +120,7 @@ const fn weights() -> Weights {
 
 /// The motions of all lanes, each with steps of its own length, and what a block of steps leaves.
 #[derive(Clone, Debug)]
-pub struct Motions {
+pub struct LaneStates {
     pub position: Row,
     pub rate: Row,
     /// Length of a step; 0 where the lane is free.
@@ -140,9 +140,9 @@ pub struct Motions {
     pub stiffness: Row,
 }
 
-impl Motions {
+impl LaneStates {
     /// All lanes rest at 1.
-    pub const IDLE: Motions = Motions {
+    pub const IDLE: LaneStates = LaneStates {
         position: [1.0; LANES],
         rate: [0.0; LANES],
         step: [0.0; LANES],

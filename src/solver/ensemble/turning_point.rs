@@ -1,6 +1,6 @@
 //! Where a motion turns between two steps of the multistep method.
 
-use super::multistep::{BLOCK, Motions, ORDER};
+use super::multistep::{BLOCK, LaneStates, ORDER};
 
 /// Values of f through which the polynomial goes.
 const POINTS: usize = 8;
@@ -43,7 +43,7 @@ const fn powers() -> [[f64; POINTS]; POINTS] {
 
 /// The positions at which the motion of a lane turns in the block that has been taken, which
 /// began at `rate`.
-pub fn turns(motions: &Motions, lane: usize, rate: f64) -> impl Iterator<Item = f64> + '_ {
+pub fn turns(motions: &LaneStates, lane: usize, rate: f64) -> impl Iterator<Item = f64> + '_ {
     (0..BLOCK).filter_map(move |i| {
         let before = if i == 0 {
             rate
@@ -55,7 +55,7 @@ pub fn turns(motions: &Motions, lane: usize, rate: f64) -> impl Iterator<Item = 
 }
 
 /// The position at which the motion of a lane turns in step `i` of the block.
-fn turn(motions: &Motions, lane: usize, i: usize) -> f64 {
+fn turn(motions: &LaneStates, lane: usize, i: usize) -> f64 {
     let step = motions.step[lane];
     let value = |j: usize| motions.f[i + ORDER - j][lane];
     let f: [f64; POINTS] = std::array::from_fn(|k| {
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn the_turn_of_a_cosine_is_found() {
         let step = 0.1;
-        let mut motions = Motions::IDLE;
+        let mut motions = LaneStates::IDLE;
         motions.step = [step; LANES];
         let begin = std::f64::consts::PI - 7.3 * step;
         let time = |i: usize| begin + (i + 1) as f64 * step;

@@ -5,7 +5,7 @@ use crate::solver::State;
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
 use crate::solver::orbit::Orbit;
-use crate::solver::segment::Segment;
+use crate::solver::roots::crossing;
 
 /// Where the present lies.
 pub enum Place<'a, O> {
@@ -186,7 +186,7 @@ impl<M: Method> Integrator<M> {
             return;
         }
         segment.expand();
-        let offset = segment.crossing(0.0, segment.length(), Segment::rate);
+        let offset = crossing(0.0, segment.length(), |offset| segment.rate(offset));
         let turn = step.begin.plus(offset);
         match *first_turn {
             None => *first_turn = Some(turn),

@@ -308,7 +308,7 @@ impl<M: Method> Integrator<M> {
                 Failure::SubstepTooShort { after, .. } | Failure::TooManySubsteps { after, .. },
             ) => after,
         };
-        self.time = self.time.plus(passed).tightened();
+        self.time = self.time.plus(passed).renormalized();
         progress
     }
 

@@ -5,7 +5,7 @@ use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
-use crate::solver::segment::ROUNDING;
+use crate::solver::segment::VALIDATION_TOLERANCE;
 
 impl<M: Method> Integrator<M> {
     /// Whether the numbers fit together: to be checked where they do not come from this process.
@@ -63,7 +63,7 @@ impl<M: Method> Integrator<M> {
     /// Where the present comes to at the latest before it is looked where it is, but for rounding:
     /// the time left is counted down step by step.
     fn latest_unseen(&self) -> Double {
-        let left = (self.time_left - ROUNDING * self.history.end().value()).max(0.0);
+        let left = (self.time_left - VALIDATION_TOLERANCE * self.history.end().value()).max(0.0);
         self.now.plus(self.mode.direction() * left)
     }
 
@@ -87,7 +87,8 @@ impl<M: Method> Integrator<M> {
     /// Whether the present, and what is recorded, lie between the limits.
     fn is_between_limits(&self) -> bool {
         let Limits { lower, upper } = self.limits;
-        let range = lower - ROUNDING * lower.abs()..=upper + ROUNDING * upper.abs();
+        let range =
+            lower - VALIDATION_TOLERANCE * lower.abs()..=upper + VALIDATION_TOLERANCE * upper.abs();
         let recorded = self.extremes.is_none_or(|Extremes { lowest, highest }| {
             lowest <= highest && range.contains(&lowest) && range.contains(&highest)
         });

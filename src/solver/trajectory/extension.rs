@@ -10,14 +10,11 @@ use crate::solver::iteration::Diverged;
 use crate::solver::limits::Limits;
 use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::short_step::{ShortStep, Trend};
-use crate::solver::step_control::{Accepted, HALVED, first_accepted};
+use crate::solver::step_control::{Accepted, HALVED, SHORTEST, first_accepted};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// First step in units of the motion's time scale.
 const FIRST_STEP: f64 = 2.0;
-
-/// A step shorter than this part of what it was to be cannot go on.
-const SHORTEST: f64 = 1e-12;
 
 impl Trajectory {
     /// Whether nothing is asked of the motion for the time `rest` but its end, and steps of the
@@ -192,7 +189,7 @@ impl Trajectory {
             }
             // Of the position, or of the rate where that is worse.
             let short = (4.0 * time_scale / length).max(1.0);
-            let missed = short * step.tail() / NEGLECTED;
+            let missed = short * step.tail() / NEGLECTED_BETWEEN_NODES;
             let factor = control.judge(missed / scale, step.contraction)?;
             Ok((step, factor))
         })?;
@@ -210,4 +207,4 @@ impl Trajectory {
 /// coefficients: f is integrated twice, which divides degree 16 by some 16², and its series goes
 /// on falling. Measured on DC and AC motions with steps of 6 to 14: 5 to 18 times less, which
 /// leaves room for the rate, whose error is larger by the inverse of the motion's time scale.
-const NEGLECTED: f64 = 1000.0;
+const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;

@@ -110,23 +110,23 @@ impl Trajectory {
         let first = self.restarts_at_every_step && self.advances == 1;
         if first && self.method.takes_endpoint_steps {
             // First, since all that the next step does with the time waits for it.
-            let time = self.time.plus(step).tightened();
+            let time = self.time.plus(step).renormalized();
             if self.takes_short_step(equation, step) {
                 self.time = time;
                 return Ok(Progress::Whole);
             }
         }
         // Whether the next endpoint-only step would meet no limit and no extreme.
-        let mut clear = true;
+        let mut unobstructed = true;
         self.advance_by_steps(step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
-            if clear && motion.asks_for_the_end_only(equation, rest) {
-                let (shift, end) = motion.endpoint_steps(equation, target, budget);
-                clear = end;
+            if unobstructed && motion.asks_for_the_end_only(equation, rest) {
+                let (shift, free) = motion.endpoint_steps(equation, target, budget);
+                unobstructed = free;
                 return Ok(shift);
             }
             *budget -= 1;
-            clear = true;
+            unobstructed = true;
             motion.extend(equation, rest)
         })
     }

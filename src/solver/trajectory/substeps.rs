@@ -33,7 +33,7 @@ impl Trajectory {
                 segment.state(after),
             ),
         };
-        self.time = time.plus(passed).tightened();
+        self.time = time.plus(passed).renormalized();
         let time = self.time;
         self.stand_at(time, end);
         Ok((segment, progress))

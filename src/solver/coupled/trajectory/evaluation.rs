@@ -4,7 +4,7 @@ use super::{Carried, Trajectory};
 use crate::solver::coupled::polynomials::{Coefficients, Polynomials, sum};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::integrator::{Method, Place};
-use crate::solver::segment::{ROUNDING, Segment};
+use crate::solver::segment::{Segment, VALIDATION_TOLERANCE};
 
 impl Trajectory {
     /// The present first-order states.
@@ -100,7 +100,7 @@ fn leads(polynomials: &Polynomials, motion: &Trajectory) -> bool {
         let gain = 2.0 * polynomials.half * slopes[0];
         let size: f64 = slopes.iter().map(|slope| slope.abs()).sum();
         let size = start.abs() + polynomials.half * size;
-        size.is_finite() && (end - start - gain).abs() <= ROUNDING * size
+        size.is_finite() && (end - start - gain).abs() <= VALIDATION_TOLERANCE * size
     };
     let (start, end) = (&polynomials.start, &polynomials.end);
     let ends = |start: &[f64], end: &[f64], slopes: &[Coefficients]| {

@@ -2,6 +2,7 @@
 
 use super::{Event, Trajectory};
 use crate::solver::coupled::{CoupledEquation, LocalCoupledEquation, Stage};
+use crate::solver::roots::{crossing, lowest_between};
 use crate::solver::segment::{PARTS, Segment};
 
 impl Trajectory {
@@ -56,31 +57,15 @@ fn first_below(
             if i == 0 {
                 return Some(0.0);
             }
-            return Some(segment.crossing(at(i - 1), at(i), &margin));
+            return Some(crossing(at(i - 1), at(i), |t| margin(segment, t)));
         }
         // A dip between three points may go below 0 and come back.
         if i >= 2 && values[i - 1] <= values[i - 2] && values[i - 1] <= values[i] {
             let lowest = lowest_between(at(i - 2), at(i), |t| margin(segment, t));
             if margin(segment, lowest) <= 0.0 {
-                return Some(segment.crossing(at(i - 2), lowest, &margin));
+                return Some(crossing(at(i - 2), lowest, |t| margin(segment, t)));
             }
         }
     }
     None
-}
-
-/// The lowest point of a dip between two offsets, by golden sections.
-fn lowest_between(mut from: f64, mut to: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const GOLDEN: f64 = 0.618_033_988_749_894_9;
-    let inner = |from: f64, to: f64| [to - GOLDEN * (to - from), from + GOLDEN * (to - from)];
-    // 0.618⁴⁰ of the bracket is the width at which rounding hides the dip.
-    for _ in 0..40 {
-        let [low, high] = inner(from, to);
-        if f(low) < f(high) {
-            to = high;
-        } else {
-            from = low;
-        }
-    }
-    0.5 * (from + to)
 }

@@ -22,8 +22,8 @@ const FIRST_STEP: f64 = 1.5;
 /// First step after a jump, in units of the relaxation time.
 const FIRST_RELAXATION: f64 = 0.5;
 
-/// A step shorter than this part of what it was to be cannot go on.
-const SHORTEST: f64 = 1e-14;
+/// A step shorter than this part of the time scale cannot go on: transients are much shorter.
+const SHORTEST_TRANSIENT: f64 = 1e-14;
 
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
@@ -38,7 +38,7 @@ struct Method {
 }
 
 impl Trajectory {
-    /// Follows the motion over one more step from the end of the last piece, which the caller
+    /// Follows the motion over one more step from the end of the last step, which the caller
     /// needs for `rest` at least. Returns by how much the origin of time has moved.
     pub(super) fn extend<E: CoupledEquation>(
         &mut self,
@@ -133,7 +133,7 @@ impl Trajectory {
         let nodes = if method.few { 0.5 } else { 1.0 };
         let seen = nodes * 4.0 * std::f64::consts::PI / local.load_frequency();
         let most = most.min(seen);
-        let shortest = (SHORTEST * scale).min(0.5 * most);
+        let shortest = (SHORTEST_TRANSIENT * scale).min(0.5 * most);
         let before = self.slopes_of_last_step(fresh);
         let control = method.control;
         let Accepted {
