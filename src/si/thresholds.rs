@@ -1,5 +1,5 @@
 //! Pull-in voltages: each is computed when it is first read, and kept until the actuator or its
-//! prestress changes. That with losses follows some forty motions.
+//! prestress changes. That with losses follows twenty motions and more.
 
 use std::cell::{Cell, RefCell};
 

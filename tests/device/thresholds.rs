@@ -1,15 +1,19 @@
 //! Pull-in thresholds of real actuators.
 
 use crate::scene::{number, read};
-use dielectric_elastomer_actuator::actuator::Parameters;
 use dielectric_elastomer_actuator::actuator::device::{
-    Branch, Device, Elasticity, Locking, Source, Spring,
+    Branch, Device, DeviceMotion, Elasticity, Locking, Source, Spring,
 };
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
+use dielectric_elastomer_actuator::actuator::{Drive, Parameters};
 use dielectric_elastomer_actuator::pull_in;
 use dielectric_elastomer_actuator::pull_in::device::{
     Glassy, Search, dynamic, from_rest, quasi_static,
 };
+use dielectric_elastomer_actuator::solver::State;
+use dielectric_elastomer_actuator::solver::coupled::{FullState, Progress, Trajectory};
+use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::limits::Limits;
 use serde_json::Value;
 
 const IDEAL: Parameters = Parameters {
@@ -313,5 +317,51 @@ fn imposed_charge_has_no_threshold() {
         assert_eq!(quasi_static(&device, 0.0), None);
         assert_eq!(dynamic(&device, 0.0), None);
         assert_eq!(step(&device), None);
+    }
+}
+
+/// Random dampings, springs and prestresses: just below the threshold the motion comes back from
+/// the saddle, just above it runs away.
+#[test]
+fn a_step_just_above_the_threshold_from_rest_pulls_in() {
+    let mut random = 1_u64;
+    let mut next = |low: f64, high: f64| {
+        random = random
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        low + (high - low) * (random >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for case in 0..25 {
+        let aspect = 10_f64.powf(next(0.5, 4.0));
+        let mut device = Device::plain(Parameters { aspect, ..IDEAL });
+        let period = ((aspect + 2.0) / 6.0).sqrt();
+        device.damping.viscosity = 10_f64.powf(next(-3.0, -0.5)) * period;
+        if case % 3 == 0 {
+            device.damping.linear = 0.3 * 10_f64.powf(next(-3.0, 0.0)) * period;
+        }
+        if case % 2 == 0 {
+            device.spring.stiffness = next(0.0, 0.1);
+        }
+        let prestress = next(-0.1, 0.1);
+        let fold = from_rest(&device, prestress, &mut Search::default()).expect("a threshold");
+        for (part, pulls_in) in [(1.0 - 1e-9, false), (1.0 + 1e-9, true)] {
+            let motion = DeviceMotion {
+                device,
+                drive: Drive::constant(part * fold.voltage, prestress),
+                records_energy: false,
+            };
+            let rest = FullState::of(State {
+                position: 1.0,
+                rate: 0.0,
+            });
+            let limits = Limits {
+                lower: 0.1,
+                upper: 4.0,
+            };
+            let mut trajectory = Trajectory::new(rest, Double::ZERO, limits, 1e-13);
+            let outcome = trajectory.advance(&motion, 300.0 * period);
+            let passed = matches!(outcome, Ok(Progress::Stopped { .. }));
+            assert_eq!(passed, pulls_in, "{case}: {device:?} {fold:?}");
+        }
     }
 }
