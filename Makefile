@@ -94,7 +94,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 .NOTPARALLEL:
 .PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test $(CHECKS) lint-all audit bless \
 test-platforms stress soak \
-fuzz bench env clean
+fuzz bench bench-device env clean
 
 help:
 	@echo 'make run             build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
@@ -110,6 +110,7 @@ help:
 	@echo 'make soak            run the long form of the tests of robustness, and fuzz (some minutes)'
 	@echo 'make fuzz            fuzz each target for FUZZ_SECONDS (60)'
 	@echo 'make bench           time the actuator and its rivals (benchmark/README.md)'
+	@echo 'make bench-device    the same for the real device in SI units (some minutes)'
 	@echo 'make fmu             build and pack the FMU only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
 	@echo 'make native          build the native library of the Python package for 64-bit Linux'
@@ -296,6 +297,11 @@ bench: fmu $(BENCHMARK_INSTALLED)
 	$(call heading,Benchmark)
 	@$(CARGO) build --release --locked --manifest-path benchmark/Cargo.toml --target-dir target/benchmark
 	@$(PYTHON_IN_VENV) benchmark/bench.py target/benchmark/release/benchmark $(BENCH)
+
+# Needs SUNDIALS (Debian: libsundials-dev).
+bench-device: fmu $(BENCHMARK_INSTALLED)
+	$(call heading,Benchmark of the real device)
+	@$(PYTHON_IN_VENV) benchmark/device.py $(BENCH)
 
 env: $(INSTALLED)
 	@$(info export $(ENVIRONMENT)):

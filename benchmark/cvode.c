@@ -9,7 +9,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>
@@ -20,8 +19,10 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #endif
 
+#include "timing.h"
+
 /* MOST_STEPS between two times: enough for every tolerance, and an end for a run that escapes. */
-enum { MOST_ROWS = 100, LONGEST = 1, BATCHES = 7, MOST_STEPS = 200000 };
+enum { MOST_ROWS = 100, LONGEST = 1, MOST_STEPS = 200000 };
 static const double LOST = 0.1; /* an error of a run that follows another motion */
 
 static double c, gamma_s, tau_s, E_s, S, phi, phi_ac, omega_ac, linear, cubic, quintic, milliseconds;
@@ -38,13 +39,6 @@ static int right_hand_side(double t, N_Vector state, N_Vector slope, void *volta
     d[0] = v;
     d[1] = (6 * v * v + square + sixth * (S * x - elastic)) / (x * (c * sixth + 2));
     return 0;
-}
-
-static double now(void)
-{
-    struct timespec clock;
-    clock_gettime(CLOCK_MONOTONIC, &clock);
-    return clock.tv_sec + 1e-9 * clock.tv_nsec;
 }
 
 /* A solver at rest at lambda = 1 and what has to be freed with it. */
@@ -111,19 +105,6 @@ static int follow(int bdf, double tolerance)
     }
     stop(&s);
     return done;
-}
-
-static int ascending(const void *one, const void *other)
-{
-    double a = *(const double *)one, b = *(const double *)other;
-    return (a > b) - (a < b);
-}
-
-/* The median of batches, so that one in which the machine did something else does not count. */
-static double median(double *batches)
-{
-    qsort(batches, BATCHES, sizeof *batches, ascending);
-    return batches[BATCHES / 2];
 }
 
 static double error_of(int compared)

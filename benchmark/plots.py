@@ -101,6 +101,46 @@ def co_simulation(rows: list[dict], path: Path) -> Path:
     return _save_small(figure, path)
 
 
+DEVICE_LOOKS = {
+    "packed FMU": LOOKS["ours, packed FMU"],
+    "heyoka": LOOKS["heyoka"],
+    "CVODE Adams": LOOKS["CVODE Adams"],
+    "CVODE BDF": {"color": style.COLOURS[2], "marker": "^"},
+    "ARKODE Kvaerno 5": {"color": style.COLOURS[3], "marker": "v", "linestyle": (0, (5, 1.6))},
+    "SciPy Radau": {"color": style.GREY, "marker": "D", "linestyle": (0, (1.2, 1.2))},
+}
+
+
+def device(rows: list[dict], titles: dict[str, str], path: Path) -> Path:
+    """One panel a scene of the real device: milliseconds of a run against the largest error."""
+    style.apply()
+    figure, panels = plt.subplots(2, 3, figsize=(13, 8), sharex=True, sharey=True)
+    panels = panels.ravel()
+    for letter, (name, title), axes in zip("abcde", titles.items(), panels):
+        for method, look in DEVICE_LOOKS.items():
+            points = sorted(
+                (max(float(row["error"]), FLOOR), 1e-6 * float(row["nanoseconds"]))
+                for row in rows
+                if row["case"] == name and row["method"] == method and row["nanoseconds"] not in ("", None)
+            )
+            if points:
+                axes.loglog(*zip(*points), label=method, markersize=5, **look)
+        axes.set_title(f"({letter})  {title}", loc="left")
+        axes.tick_params(labelbottom=True)
+        axes.set_xlabel("largest error of stretch, rate and charge")
+    for axes in panels[::3]:
+        axes.set_ylabel("milliseconds of a run")
+    panels[0].set_xlim(1e-1, 1e-15)
+    rest = panels[len(titles)]
+    rest.axis("off")
+    handles = {}
+    for axes in panels[: len(titles)]:
+        handles.update({name: handle for handle, name in zip(*axes.get_legend_handles_labels())})
+    rest.legend(list(handles.values()), list(handles), loc="center left")
+    figure.suptitle("Real device, run time against error: further down is faster, further right more accurate")
+    return _save_small(figure, path)
+
+
 def _save_small(figure, path: Path) -> Path:
     """As a picture of few colours, which a plot has anyhow."""
     from PIL import Image
