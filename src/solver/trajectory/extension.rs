@@ -1,6 +1,8 @@
 //! The next step of a motion, of the kind that what is asked for allows.
 
-use super::Trajectory;
+use fearless_simd::Level;
+
+use super::{Kind, Steps, Trajectory};
 use crate::solver::collocation::{Guess, Substep, Task, solve_by_16};
 use crate::solver::double::Double;
 use crate::solver::endpoint::{End, Way};
@@ -10,29 +12,37 @@ use crate::solver::iteration::Diverged;
 use crate::solver::limits::Limits;
 use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::short_step::{ShortStep, Trend};
-use crate::solver::step_control::{Accepted, HALVED, SHORTEST, first_accepted};
+use crate::solver::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// First step in units of the motion's time scale.
 const FIRST_STEP: f64 = 2.0;
 
+/// Between the nodes the position misses less than this part of the last two Legendre
+/// coefficients: f is integrated twice, which divides degree 16 by some 16², and its series goes
+/// on falling. Measured on DC and AC motions with steps of 6 to 14: 5 to 18 times less, which
+/// leaves room for the rate, whose error is larger by the inverse of the motion's time scale.
+const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;
+
 impl Trajectory {
-    /// Whether nothing is asked of the motion for the time `rest` but its end, and steps of the
-    /// kinds for that are shorter.
-    pub(super) fn asks_for_the_end_only<E: Equation>(&self, equation: &E, rest: f64) -> bool {
+    /// The kind of the steps that come next, where the motion is asked for after the time `rest`.
+    /// Steps without dense output are for where nothing but its end is, and they are shorter.
+    pub(super) fn next_kind<E: Equation>(&self, equation: &E, rest: f64) -> Kind {
         let steps = &self.method;
-        if !steps.takes_endpoint_steps {
-            return false;
-        }
-        let shorter = if self.restarts_at_every_step {
-            if steps.single.reach(rest) {
-                return true;
-            }
-            steps.single.are_shorter_than(rest)
+        let alone = self.restarts_at_every_step;
+        let (kind, shorter) = if alone {
+            (Kind::SingleEndpoint, steps.single.are_shorter_than(rest))
         } else {
-            steps.endpoint.are_shorter_than(rest)
+            (Kind::PlannedEndpoint, steps.endpoint.are_shorter_than(rest))
         };
-        shorter && !(steps.follows_orbits && equation.repeats())
+        // So few take no longer than to look for an orbit.
+        let few = alone && steps.single.reach(rest);
+        let repeats = || steps.follows_orbits && equation.repeats();
+        if steps.takes_endpoint_steps && (few || shorter && !repeats()) {
+            kind
+        } else {
+            Kind::DenseOutput
+        }
     }
 
     /// Makes the first step from the origin on in 4 nodes, if that is possible.
@@ -67,14 +77,14 @@ impl Trajectory {
         }
     }
 
-    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and
-    /// moves the origin there. Returns by how much, and whether the next endpoint-only step would
-    /// meet no limit and no extreme.
-    pub(super) fn endpoint_steps<E: Equation>(
+    /// Follows the motion from the end of the last step toward `target` by steps that `go` takes,
+    /// keeping none of it, and moves the origin there. Returns by how much, and whether the next such
+    /// step would meet no limit and no extreme.
+    pub(super) fn go_to_end(
         &mut self,
-        equation: &E,
         target: Double,
         budget: &mut u32,
+        go: impl FnOnce(&mut Steps, Level, StepControl, &mut Way) -> End,
     ) -> (Double, bool) {
         let begin = self.history.end();
         self.arrive(begin);
@@ -86,14 +96,7 @@ impl Trajectory {
             bounds: self.bounds(),
             budget: *budget,
         };
-        let (level, control) = (self.level, self.control);
-        let end = if self.restarts_at_every_step {
-            let steps = &mut self.method.single;
-            steps.go(level, equation, control.repeated(), &mut way)
-        } else {
-            let steps = &mut self.method.endpoint;
-            steps.go(level, equation, control, &mut way)
-        };
+        let end = go(&mut self.method, self.level, self.control, &mut way);
         *budget = way.budget;
         let shift = if end == End::Reached {
             target
@@ -106,7 +109,9 @@ impl Trajectory {
 
     /// Adds one more step with dense output; `rest` is the time still asked for. Returns by how
     /// much the origin of time was moved.
-    /// The error is the length of a step that was too short to go on.
+    ///
+    /// # Errors
+    /// The length of a step that was too short to go on.
     pub(super) fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
         let follows_orbits = self.method.follows_orbits;
         let repeats = follows_orbits && equation.repeats();
@@ -202,9 +207,3 @@ impl Trajectory {
         Ok(step)
     }
 }
-
-/// Between the nodes the position misses less than this part of the last two Legendre
-/// coefficients: f is integrated twice, which divides degree 16 by some 16², and its series goes
-/// on falling. Measured on DC and AC motions with steps of 6 to 14: 5 to 18 times less, which
-/// leaves room for the rate, whose error is larger by the inverse of the motion's time scale.
-const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;

@@ -17,7 +17,18 @@ use super::{Equation, State};
 mod extension;
 mod substeps;
 
-/// Kinds of steps, and what each leaves for the next of its kind.
+/// The kinds of steps beside short ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// With 16 nodes and dense output.
+    DenseOutput,
+    /// Of which only the end is asked for, many of one length.
+    PlannedEndpoint,
+    /// Of which only the end is asked for, before the equation changes.
+    SingleEndpoint,
+}
+
+/// What each kind of steps leaves for the next of its kind.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Steps {
     /// Whether a motion that repeats is looked for.
@@ -120,14 +131,28 @@ impl Trajectory {
         let mut unobstructed = true;
         self.advance_by_steps(step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
-            if unobstructed && motion.asks_for_the_end_only(equation, rest) {
-                let (shift, free) = motion.endpoint_steps(equation, target, budget);
-                unobstructed = free;
-                return Ok(shift);
-            }
-            *budget -= 1;
-            unobstructed = true;
-            motion.extend(equation, rest)
+            let kind = match unobstructed {
+                true => motion.next_kind(equation, rest),
+                false => Kind::DenseOutput,
+            };
+            let (shift, free) = match kind {
+                Kind::DenseOutput => {
+                    *budget -= 1;
+                    (motion.extend(equation, rest)?, true)
+                }
+                Kind::PlannedEndpoint => {
+                    motion.go_to_end(target, budget, |steps, level, control, way| {
+                        steps.endpoint.go(level, equation, control, way)
+                    })
+                }
+                Kind::SingleEndpoint => {
+                    motion.go_to_end(target, budget, |steps, level, control, way| {
+                        steps.single.go(level, equation, control.repeated(), way)
+                    })
+                }
+            };
+            unobstructed = free;
+            Ok(shift)
         })
     }
 }
