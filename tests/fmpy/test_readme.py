@@ -65,9 +65,16 @@ def test_package_command_runs(words, fmu_path, tmp_path):
     in_checkout([Path(sys.executable).parent / words[0], *words[1:]], fmu_path, tmp_path)
 
 
+@pytest.mark.parametrize(
+    "words", [words for words in commands() if words[0] == ".venv/bin/python"], ids=lambda words: " ".join(words)
+)
+def test_python_command_runs(words, fmu_path, si_path, tmp_path):
+    assert in_checkout([sys.executable, *words[1:]], fmu_path, tmp_path).stdout
+
+
 def test_every_command_is_of_a_known_kind():
     used = {words[0] for words in commands()}
-    assert {"make", "pip", "dielectric-actuator"} == used
+    assert {"make", "pip", "dielectric-actuator", ".venv/bin/python"} == used
 
 
 def test_make_targets_exist():
