@@ -19,7 +19,7 @@ use cargo_metadata::{Message, Metadata, MetadataCommand, Package};
 use object::BinaryFormat;
 
 use crate::panic_report;
-use crate::platform::Platform;
+use crate::platform::{PLATFORMS, Platform};
 use crate::toolchain::Toolchain;
 use crate::zig::{Stand, Zig, said};
 
@@ -182,22 +182,30 @@ fn c_environment(
     stand: &Stand,
     folder: &Path,
 ) -> Result<Vec<(String, OsString)>> {
-    let mut headers = OsString::from("-nostdinc");
-    for folder in zig.headers(platform, folder)? {
-        headers.push(" -isystem ");
-        headers.push(folder);
-    }
     let triple = platform.triple.replace('-', "_");
     let usual = env::var_os("PATH").unwrap_or_default();
     let folders = std::iter::once(stand.path.clone()).chain(env::split_paths(&usual));
-    Ok(vec![
+    let mut variables = vec![
         ("PATH".to_owned(), env::join_paths(folders)?),
         (format!("CC_{triple}"), (&stand.cc).into()),
         (format!("AR_{triple}"), (&stand.ar).into()),
         // zig has the target from its own command line and knows it by another name.
         ("CRATE_CC_NO_DEFAULTS".to_owned(), "1".into()),
-        (format!("BINDGEN_EXTRA_CLANG_ARGS_{triple}"), headers),
-    ])
+    ];
+    // bindgen itself watches the variable of the platform it runs on: one that came and went would make
+    // cargo compile it, and all that is behind it, anew for each library.
+    for headed in [platform, &PLATFORMS[0]] {
+        let mut headers = OsString::from("-nostdinc");
+        let place = folder.with_file_name(headed.folder);
+        fs::create_dir_all(&place).with_context(|| format!("cannot make {}", place.display()))?;
+        for folder in zig.headers(headed, &place)? {
+            headers.push(" -isystem ");
+            headers.push(folder);
+        }
+        let triple = headed.triple.replace('-', "_");
+        variables.push((format!("BINDGEN_EXTRA_CLANG_ARGS_{triple}"), headers));
+    }
+    Ok(variables)
 }
 
 /// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary: those of the
