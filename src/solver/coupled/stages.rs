@@ -120,11 +120,31 @@ pub(super) fn solve<L: LocalCoupledEquation>(
     [stiff, few]: [bool; 2],
 ) -> Result<Step, Diverged> {
     match (stiff, few) {
-        (false, false) => dispatch!(level, simd => by::<_, L, 2, 16>(simd, &GAUSS_16, local, task)),
-        (false, true) => dispatch!(level, simd => by::<_, L, 1, 8>(simd, &GAUSS_8, local, task)),
-        (true, false) => dispatch!(level, simd => by::<_, L, 2, 16>(simd, &RADAU_16, local, task)),
-        (true, true) => dispatch!(level, simd => by::<_, L, 1, 8>(simd, &RADAU_8, local, task)),
+        (false, false) => solve_by::<L, 2, 16>(level, &GAUSS_16, local, task),
+        (false, true) => solve_by::<L, 1, 8>(level, &GAUSS_8, local, task),
+        (true, false) => solve_by::<L, 2, 16>(level, &RADAU_16, local, task),
+        (true, true) => solve_by::<L, 1, 8>(level, &RADAU_8, local, task),
     }
+}
+
+/// Rows of eight nodes gain by AVX-512 also where it is not dispatched to otherwise.
+fn solve_by<L: LocalCoupledEquation, const R: usize, const N: usize>(
+    level: Level,
+    rule: &Rule<N>,
+    local: &L,
+    task: &Task,
+) -> Result<Step, Diverged>
+where
+    Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
+{
+    #[cfg(target_arch = "x86_64")]
+    if let Some(avx512) = level.as_avx512() {
+        return avx512.vectorize(
+            #[inline(always)]
+            || by::<_, L, R, N>(avx512, rule, local, task),
+        );
+    }
+    dispatch!(level, simd => by::<_, L, R, N>(simd, rule, local, task))
 }
 
 #[inline(always)]
