@@ -78,17 +78,27 @@ impl Orbit {
         }
     }
 
+    /// What is left of a time after whole periods, 0 to a period.
+    fn remainder(&self, time: f64) -> Double {
+        let mut rest = Double::new(time);
+        // The remainder of two f64 is exact. The low part of the period enters once for each whole
+        // period: of the longest times that is many periods again.
+        while rest.high.abs() >= self.period.high {
+            let whole = (rest.high / self.period.high).trunc();
+            let remainder = Double::new(rest.high % self.period.high).plus(rest.low);
+            rest = remainder.plus(-(whole * self.period.low));
+        }
+        if rest.high < 0.0 {
+            rest = rest.add(self.period);
+        }
+        rest
+    }
+
     /// Where between the turning points, and in which direction, the motion is
     /// after the time `step`.
     #[must_use]
     pub fn run(&self, now: Double, mut direction: f64, step: f64) -> (Double, f64) {
-        let mut rest = Double::new(step);
-        if step >= self.period.high {
-            // The remainder of two f64 is exact; the low part of the period
-            // enters once for each whole period.
-            let whole = (step / self.period.high).floor();
-            rest = Double::new(step % self.period.high).plus(-(whole * self.period.low));
-        }
+        let rest = self.remainder(step);
         let mut now = now.add(rest.scale(direction));
         // Two reflections come back to the first direction; a third and fourth
         // happen where rounding left a little more than a period.
@@ -125,6 +135,23 @@ mod tests {
         ] {
             let (now, along) = orbit.run(from, 1.0, step);
             assert_eq!((now.value(), along), (place, direction), "step {step}");
+        }
+    }
+
+    /// Of a period that is no `f64`, the longest steps hold more periods than there are digits.
+    #[test]
+    fn no_step_leaves_the_orbit() {
+        let second_turn = Double::new(1.0).div(Double::new(3.0)).add(Double::new(1.0));
+        let orbit = Orbit::between(Double::new(1.0), second_turn);
+        let from = Double::new(1.1);
+        for exponent in 0..=50 {
+            for part in [1.0, 3.7, 9.1] {
+                let step = part * 10_f64.powi(exponent);
+                let (now, along) = orbit.run(from, 1.0, step);
+                let inside =
+                    now.since(orbit.turns()[0]) >= 0.0 && orbit.second_turn.since(now) >= 0.0;
+                assert!(inside && along.abs() == 1.0, "step {step:e}: {now:?}");
+            }
         }
     }
 }

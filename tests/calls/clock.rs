@@ -250,6 +250,36 @@ fn numbers_out_of_all_range_are_refused_at_the_door() {
     }
 }
 
+/// A periodic motion stays within its limits in steps of any length, one after the other.
+#[test]
+fn the_longest_steps_leave_no_limits() {
+    for values in [
+        &[("phi", 0.5)][..],
+        &[("S", 0.3)],
+        &[("phi", 0.1), ("c", 1e6)],
+        &[("phi", 0.5), ("lambda_start", 1.1)],
+        &[("gamma_s", 0.1), ("tau_s", 0.2), ("E_s", 0.3), ("phi", 0.2)],
+    ] {
+        for exponent in 0..=50 {
+            let host = started(0.0, None, values);
+            for h in [10_f64.powi(exponent), 0.7 * 10_f64.powi(exponent), 0.01] {
+                let status = host.step(host.time(), h);
+                // Next to a long time no clock can show a short step.
+                if status != OK {
+                    assert!(h < host.time() * 1e-10, "{h:e}: {}", host.last_line());
+                    break;
+                }
+                let stretch = host.get("lambda");
+                assert!(
+                    (0.5..2.0).contains(&stretch),
+                    "{values:?}, {h:e}: {stretch:e}"
+                );
+            }
+            assert_eq!(Host::new().restored(&host.serialized()), OK, "{exponent}");
+        }
+    }
+}
+
 /// A step that is too much work ends early, and the host may go on from there; one that does
 /// nothing about it is asked to end.
 #[test]
