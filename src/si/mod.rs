@@ -21,7 +21,7 @@ pub use table::{ALIASES, VARIABLES};
 use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
-use crate::model::variables::{self, Alias, Variable};
+use crate::model::variables::{self, Access, Alias, Kind, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
@@ -225,14 +225,33 @@ impl Model for Si {
     }
 
     fn check_state(view: &View<Si>) -> Result<(), String> {
-        if view.is_admitted() && view.stretch_acceleration().is_finite() {
+        // Not what the motion remembers: the parameters may be others.
+        let place = Place::of_state(*view.time, view.state());
+        let view = View { place, ..*view };
+        let read = |row: &u32| match VARIABLES[*row as usize].access {
+            Access::Result { get, .. } => get(&view),
+            _ => 0.0,
+        };
+        if view.is_admitted() && Si::DERIVATIVES.iter().all(|row| read(row).is_finite()) {
             return Ok(());
         }
-        let State { position, rate } = view.state().motion;
-        let [stretch, speed] = [position, rate].map(Shortest);
-        Err(format!(
-            "there is no motion at the stretch {stretch} and its rate {speed}"
-        ))
+        // A state that a trial has moved far out, or else all that matters.
+        let far = |row: &&u32| {
+            let Kind::Real { nominal, min, .. } = VARIABLES[**row as usize].kind else {
+                return false;
+            };
+            let value = read(row);
+            !(value.abs() < FAR * nominal) || min >= 0.0 && value <= 0.0
+        };
+        let said = |row: &u32| {
+            let name = VARIABLES[*row as usize].name;
+            format!("{name} = {}", Shortest(read(row)))
+        };
+        let state: Vec<String> = match Si::STATES.iter().find(far) {
+            Some(row) => vec![said(row)],
+            None => Si::STATES.iter().map(said).collect(),
+        };
+        Err(format!("there is no motion at {}", state.join(", ")))
     }
 
     fn state(view: &View<Si>) -> SiState {
@@ -247,6 +266,9 @@ impl Model for Si {
         view.series(order)
     }
 }
+
+/// So many times its typical size is no state that anything could be in.
+const FAR: f64 = 1e30;
 
 const GUID: guid::Text = guid::of::<Si>();
 

@@ -156,7 +156,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
                 fault.text.contains(&format!("{name} = {value}")),
                 "{fault:?}"
             );
-            assert!(fault.text.contains("stretch 1."), "{fault:?}");
+            assert!(fault.text.contains("lambda = 1."), "{fault:?}");
             assert_eq!(host.get(name), before);
         }
         if interface == Interface::CoSimulation {

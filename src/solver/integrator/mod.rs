@@ -26,9 +26,6 @@ mod validation;
 pub use evaluation::Place;
 pub use history::{History, KeptStep};
 
-/// Steps that one call may take: about a second of work.
-pub const MOST_STEPS: u32 = 2_000_000;
-
 /// What rounding may leave of a step that has been made.
 const LAST_BITS: f64 = 1e-18;
 
@@ -89,6 +86,9 @@ pub trait Method: Copy + Debug + Serialize + DeserializeOwned {
     type Event: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
     /// Where positions are counted from.
     type Origin: PositionOrigin;
+
+    /// Steps that one call may take: some seconds of work.
+    const MOST_STEPS: u32;
 
     /// Whether its own numbers fit to those of the motion.
     fn is_valid(&self, integrator: &Integrator<Self>) -> bool;
@@ -330,7 +330,7 @@ impl<M: Method> Integrator<M> {
             Mode::AtRest => return Ok(Progress::Whole),
         }
         let mut target = self.now.plus(step);
-        let mut budget = MOST_STEPS;
+        let mut budget = M::MOST_STEPS;
         loop {
             if let Mode::Dense {
                 stop: Some((limit, at)),
@@ -365,7 +365,7 @@ impl<M: Method> Integrator<M> {
                     return Err(match too_short {
                         Some(length) => Failure::SubstepTooShort { length, after },
                         None => Failure::TooManySubsteps {
-                            most: MOST_STEPS,
+                            most: M::MOST_STEPS,
                             after,
                         },
                     });

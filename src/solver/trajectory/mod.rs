@@ -46,6 +46,7 @@ pub struct Steps {
 impl Method for Steps {
     type Event = Limit;
     type Origin = ();
+    const MOST_STEPS: u32 = 2_000_000;
 
     fn is_valid(&self, _: &Trajectory) -> bool {
         self.endpoint.are_valid() && self.single.are_valid()

@@ -76,6 +76,9 @@ impl Method for Carried {
     type Event = super::Event;
     type Origin = crate::solver::double::Double;
 
+    /// Each is the work of ten without first-order states.
+    const MOST_STEPS: u32 = 200_000;
+
     fn is_valid(&self, motion: &Trajectory) -> bool {
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
         motion.full_start().is_finite()
