@@ -6,6 +6,7 @@
 #![allow(unsafe_code, clippy::undocumented_unsafe_blocks)]
 
 mod clock;
+mod continuous_states;
 mod derivatives;
 mod environment;
 mod exchange;
