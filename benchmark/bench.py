@@ -16,7 +16,7 @@ from pathlib import Path
 import plots
 import ratios
 import records
-from cases import ALL_CASES, ROOT
+from cases import ALL_CASES, CASES, ROOT
 from programs import C_FLAGS, Missing, cvode, rust
 
 SKIPS_CASE = "d"
@@ -80,7 +80,7 @@ class Rivals:
             yield from program.rows("free", case, options.milliseconds)
         if self.heyoka:
             yield from self.heyoka.free(case, 1e-3 * options.milliseconds)
-        if self.scipy and number <= options.scipy_rounds:
+        if self.scipy and number <= options.scipy_rounds and case in CASES:
             yield from self.scipy(case)
 
     def steps(self, case, options):

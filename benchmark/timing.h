@@ -7,7 +7,7 @@ enum { BATCHES = 7 };
 static double now(void)
 {
     struct timespec clock;
-    clock_gettime(CLOCK_MONOTONIC, &clock);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &clock);
     return clock.tv_sec + 1e-9 * clock.tv_nsec;
 }
 

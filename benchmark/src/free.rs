@@ -1,11 +1,11 @@
 //! Free-running: a fresh start, read at the times of the reference, for a sweep
 //! of tolerances.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use crate::case::{Case, Pair};
 use crate::row::Row;
-use crate::timing::seconds_per_call;
+use crate::timing::{processor_time, seconds_per_call};
 use crate::{ours, rivals};
 
 /// A run that takes longer ends the sweep of its method.
@@ -51,13 +51,13 @@ fn sweep(method: &Method, case: &Case, least: Duration) {
             note: String::new(),
         };
         states.clear();
-        let begin = Instant::now();
+        let begin = processor_time();
         if let Err(message) = (method.solve)(case, tolerance, &mut states) {
             row.note = format!("failed: {message}");
             row.print();
             continue;
         }
-        let single = begin.elapsed();
+        let single = processor_time() - begin;
         let error = case.error(&states);
         row.error = Some(error);
         // 1e-12: what rounding the parameters alone may do to a case, with room.

@@ -34,7 +34,7 @@ impl Row<'_> {
     }
 }
 
-/// A text that fits into a cell.
+/// A text as a cell.
 fn plain(text: &str) -> String {
-    text.replace([',', '\n'], ";")
+    format!("\"{}\"", text.replace(['"', '\n'], ";"))
 }

@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use dielectric_elastomer_actuator::actuator::motion::{Load, LocalMotion};
 use dielectric_elastomer_actuator::actuator::{Drive, Motion};
-use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::nondimensional::value_reference;
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limits;
@@ -148,7 +147,14 @@ fn integration<'a>(case: &'a Case, motion: &'a Motion) -> Vec<Skip<'a>> {
             "dense output, where only the end of a step is asked for (endpoint-only steps of 8 nodes beside dense ones of 16)",
             1e-6,
             Box::new(move || follow(ours::start(1e-6), motion, TIME, 100.0)),
-            Box::new(move || follow(ours::start(1e-6).without_endpoint_steps(), motion, TIME, 100.0)),
+            Box::new(move || {
+                follow(
+                    ours::start(1e-6).without_endpoint_steps(),
+                    motion,
+                    TIME,
+                    100.0,
+                )
+            }),
         ),
         skip(
             "extremes, where they are not recorded (endpoint-only steps beside dense ones that are searched)",
