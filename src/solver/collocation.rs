@@ -51,20 +51,6 @@ pub struct Substep<const P: usize> {
     pub contraction: f64,
 }
 
-impl<const P: usize> Series<P> {
-    /// The series of a constant f.
-    #[must_use]
-    pub fn constant(f: f64) -> Series<P> {
-        let (mut even, odd) = ([0.0; P], [0.0; P]);
-        even[0] = f;
-        Series {
-            half: 1.0,
-            even,
-            odd,
-        }
-    }
-}
-
 impl<const P: usize> Substep<P> {
     /// The size of the last two coefficients of f, in units of the position:
     /// what is neglected after them is smaller.

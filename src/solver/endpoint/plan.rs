@@ -19,6 +19,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::matrix::{diagonals, inverse_of_one_less, product};
 use super::table::{Diagonals, TABLE};
+use crate::solver::collocation::clenshaw;
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
 
@@ -90,23 +91,6 @@ fn permuted<S: Simd>(values: f64x4<S>) -> [f64x4<S>; 4] {
 #[inline(always)]
 fn both_permuted<S: Simd>([low, high]: Pair<S>) -> [[f64x4<S>; 4]; 2] {
     [permuted(low), permuted(high)]
-}
-
-/// A Legendre series at u, by Clenshaw's summation.
-#[inline(always)]
-fn legendre<S: Simd>(simd: S, u: f64x4<S>, series: &[f64; NODES]) -> f64x4<S> {
-    let (mut next, mut after) = (f64x4::splat(simd, 0.0), f64x4::splat(simd, 0.0));
-    for degree in (0..NODES).rev() {
-        let k = degree as f64;
-        let rise = u * ((2.0 * k + 1.0) / (k + 1.0));
-        let fall = f64x4::splat(simd, -(k + 1.0) / (k + 2.0));
-        let sum = rise.mul_add(
-            next,
-            after.mul_add(fall, f64x4::splat(simd, series[degree])),
-        );
-        (next, after) = (sum, next);
-    }
-    next
 }
 
 /// `first + matrix · values`, the values permuted.
@@ -301,7 +285,7 @@ impl Plan {
         let mut values = pair(simd, &self.offset);
         for k in 0..2 {
             let u = values[k].mul_add(inverse, one);
-            values[k] = legendre(simd, u, &series);
+            values[k] = clenshaw::<_, { NODES / 2 }>(u, |degree| u.same(series[degree]));
         }
         values
     }
