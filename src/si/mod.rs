@@ -241,7 +241,7 @@ impl Model for Si {
                 return false;
             };
             let value = read(row);
-            !(value.abs() < FAR * nominal) || min >= 0.0 && value <= 0.0
+            !value.is_finite() || value.abs() >= FAR * nominal || min >= 0.0 && value <= 0.0
         };
         let said = |row: &u32| {
             let name = VARIABLES[*row as usize].name;
