@@ -10,41 +10,12 @@
 //! pieces solve the equation of motion is not checked: bytes forged with care move
 //! the actuator as they say, until an input or a parameter changes.
 
-use postcard::ser_flavors;
-
 use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE, check_time};
 use crate::model::Model;
 use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
 pub const LAYOUT: u16 = 8;
-
-/// Memory that grows with what is written to it.
-struct Growing(Vec<u8>);
-
-impl ser_flavors::Flavor for Growing {
-    type Output = Vec<u8>;
-
-    /// Not inlined, since a state has hundreds of numbers.
-    #[inline(never)]
-    fn try_extend(&mut self, bytes: &[u8]) -> postcard::Result<()> {
-        match <[u8; 8]>::try_from(bytes) {
-            Ok(number) => self.0.extend_from_slice(&number),
-            Err(_) => self.0.extend_from_slice(bytes),
-        }
-        Ok(())
-    }
-
-    #[inline(never)]
-    fn try_push(&mut self, byte: u8) -> postcard::Result<()> {
-        self.0.push(byte);
-        Ok(())
-    }
-
-    fn finalize(self) -> postcard::Result<Vec<u8>> {
-        Ok(self.0)
-    }
-}
 
 impl<M: Model> Instance<M> {
     /// The instance as bytes, in the memory of `buffer`.
@@ -53,7 +24,7 @@ impl<M: Model> Instance<M> {
     /// Error where the memory does not suffice.
     pub fn save(&self, mut buffer: Vec<u8>) -> Result<Vec<u8>, Fault> {
         buffer.clear();
-        postcard::serialize_with_flavor(self, Growing(buffer))
+        postcard::to_extend(self, buffer)
             .map_err(|error| Fault::error(format!("the state cannot be saved: {error}")))
     }
 

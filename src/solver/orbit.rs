@@ -79,19 +79,29 @@ impl Orbit {
     }
 
     /// What is left of a time after whole periods, 0 to a period.
+    #[inline]
     fn remainder(&self, time: f64) -> Double {
-        let mut rest = Double::new(time);
-        // The remainder of two f64 is exact. The low part of the period enters once for each whole
-        // period: of the longest times that is many periods again.
+        if time < self.period.high {
+            return Double::new(time);
+        }
+        let mut rest = self.less_whole_periods(time);
+        // The low part of the period enters once for each whole period: of the longest times that is
+        // many periods again.
         while rest.high.abs() >= self.period.high {
-            let whole = (rest.high / self.period.high).trunc();
-            let remainder = Double::new(rest.high % self.period.high).plus(rest.low);
-            rest = remainder.plus(-(whole * self.period.low));
+            rest = self.less_whole_periods(rest.high).plus(rest.low);
         }
         if rest.high < 0.0 {
             rest = rest.add(self.period);
         }
         rest
+    }
+
+    /// A time less as many periods as it seems to hold by the high part of the period.
+    #[inline]
+    fn less_whole_periods(&self, time: f64) -> Double {
+        let whole = (time / self.period.high).trunc();
+        // The remainder of two f64 is exact.
+        Double::new(time % self.period.high).plus(-(whole * self.period.low))
     }
 
     /// Where between the turning points, and in which direction, the motion is

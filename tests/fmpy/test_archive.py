@@ -10,8 +10,8 @@ import fmpy
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-LARGEST_BINARY = 446_000
-"""What the binary has with the plans of equal steps for three levels of SIMD instructions; 400 000 is the aim."""
+LARGEST_BINARY = 455_000
+"""What the binary takes now, with the plans of equal steps for two levels of SIMD instructions; 400 000 is the aim."""
 
 
 @pytest.fixture(scope="module")
