@@ -6,6 +6,8 @@
 
 #[path = "../../src/description/schema.rs"]
 mod schema;
+#[path = "../../src/shortest.rs"]
+mod shortest;
 
 use fmi::fmi2::schema::{ScalarVariable as Read, ScalarVariableElement};
 use schema::{Number, Real, ScalarVariable};
@@ -30,8 +32,8 @@ libfuzzer_sys::fuzz_target!(
             real: Some(Real {
                 unit: name,
                 display_unit: Some(description),
-                min: Number(min),
-                max: Number(-min),
+                min: Some(Number(min)),
+                max: Some(Number(-min)),
                 nominal: Number(start),
                 start: Some(Number(start)),
                 derivative,
