@@ -2,10 +2,10 @@
 
 use dielectric_elastomer_actuator::description;
 use dielectric_elastomer_actuator::model::Model;
-use dielectric_elastomer_actuator::model::variables::{Causality, Kind, Variability, Variable};
-use dielectric_elastomer_actuator::nondimensional::{
-    ALIASES, Nondimensional, VARIABLES, value_reference,
+use dielectric_elastomer_actuator::model::variables::{
+    self, Causality, Kind, Variability, Variable,
 };
+use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
 use dielectric_elastomer_actuator::si::Si;
 use fmi::fmi2::schema::Fmi2ModelDescription;
 
@@ -30,49 +30,28 @@ fn the_checked_in_description_is_the_generated_one() {
     }
 }
 
-/// Read back by the reader of the crate `fmi`, which knows nothing of our writer.
-#[test]
-fn an_independent_reader_finds_every_variable() {
-    let text = description::xml::<Nondimensional>();
+/// Every variable and further name of a model, with its unit, read back by the reader of the crate
+/// `fmi`, which knows nothing of our writer.
+fn an_independent_reader_finds_every_variable<M: Model>() {
+    let text = description::xml::<M>();
     let read: Fmi2ModelDescription = fmi::schema::deserialize(&text).expect("a valid description");
-    assert_eq!(read.guid, Nondimensional::GUID);
+    assert_eq!(read.guid, M::GUID);
     let names: Vec<&str> = read
         .model_variables
         .variables
         .iter()
         .map(|v| v.name.as_str())
         .collect();
-    let further = ALIASES.iter().map(|alias| alias.name);
-    let ours: Vec<&str> = VARIABLES.iter().map(|v| v.name).chain(further).collect();
+    let further = M::ALIASES.iter().map(|alias| alias.name);
+    let ours: Vec<&str> = M::VARIABLES.iter().map(|v| v.name).chain(further).collect();
     assert_eq!(names, ours);
     for variable in &read.model_variables.variables {
         assert_eq!(
-            value_reference(&variable.name),
+            variables::value_reference::<M>(&variable.name),
             Some(variable.value_reference)
         );
     }
-}
-
-/// That of the actuator in SI units: every variable, and the unit of each that has one.
-#[test]
-fn an_independent_reader_finds_every_variable_in_si_units() {
-    let text = description::xml::<Si>();
-    let read: Fmi2ModelDescription = fmi::schema::deserialize(&text).expect("a valid description");
-    assert_eq!(read.guid, Si::GUID);
-    let names: Vec<&str> = read
-        .model_variables
-        .variables
-        .iter()
-        .map(|v| v.name.as_str())
-        .collect();
-    let further = Si::ALIASES.iter().map(|alias| alias.name);
-    let ours: Vec<&str> = Si::VARIABLES
-        .iter()
-        .map(|v| v.name)
-        .chain(further)
-        .collect();
-    assert_eq!(names, ours);
-    for variable in Si::VARIABLES {
+    for variable in M::VARIABLES {
         let unit = format!("<Unit name=\"{}\">", variable.unit.name);
         assert!(
             text.contains(&unit),
@@ -81,6 +60,16 @@ fn an_independent_reader_finds_every_variable_in_si_units() {
             variable.name
         );
     }
+}
+
+#[test]
+fn an_independent_reader_finds_every_nondimensional_variable() {
+    an_independent_reader_finds_every_variable::<Nondimensional>();
+}
+
+#[test]
+fn an_independent_reader_finds_every_variable_in_si_units() {
+    an_independent_reader_finds_every_variable::<Si>();
 }
 
 /// On a difference the message shows the table that the README must have.

@@ -1,9 +1,11 @@
 //! What the model structure says of dependencies, against what happens.
 
-use crate::host::Host;
+use crate::host::{Host, RICH};
 use dielectric_elastomer_actuator::instance::Interface;
 use dielectric_elastomer_actuator::model::Model;
-use dielectric_elastomer_actuator::model::variables::{Access, Causality, Kind};
+use dielectric_elastomer_actuator::model::variables::{
+    Access, Causality, Dependencies, Kind, Meant,
+};
 use dielectric_elastomer_actuator::si::Si;
 
 /// Scenes that differ in what is a state and what is imposed.
@@ -14,31 +16,34 @@ const SCENES: [&[(&str, f64)]; 4] = [
     &[("source", 3.0), ("charge_imposed", 5e-12), ("R_s", 1e6)],
 ];
 
-/// Everything beyond the paper, so that every parameter has an effect.
-const RICH: [(&str, f64); 22] = [
-    ("lambda_max", 4.0),
-    ("lambda_start", 1.1),
-    ("lambda_dot_start", 1e4),
-    ("charge_start", 3e-12),
-    ("k1", -0.1),
-    ("k2", 0.05),
-    ("k3", 0.01),
-    ("m_load", 1e-12),
-    ("k_load", 1.0),
-    ("eta", 0.02),
-    ("b", 1e-8),
-    ("mu_1", 1e5),
-    ("mu_2", 1e5),
-    ("mu_3", 1e5),
-    ("J_1", 40.0),
-    ("xi1_start", 1.02),
-    ("xi2_start", 1.03),
-    ("xi3_start", 1.04),
-    ("G_p", 1e-9),
-    ("sigma", 1e-7),
-    ("force", 1e-5),
-    ("V_ac", 0.0),
-];
+/// The value of each variable.
+fn everything(host: &Host) -> Vec<f64> {
+    Si::VARIABLES.iter().map(|row| host.get(row.name)).collect()
+}
+
+/// Each output and derivative that is another than `before`, since the number `known` was changed,
+/// declares that it depends on it.
+fn assert_declared(
+    host: &Host,
+    before: &[f64],
+    known: &str,
+    declared: fn(&Dependencies) -> &'static [&'static str],
+) {
+    for (row, before) in Si::VARIABLES.iter().zip(before) {
+        let Access::Result { dependencies, .. } = &row.access else {
+            continue;
+        };
+        let listed = row.causality == Causality::Output || row.derivative_of.is_some();
+        let after = host.get(row.name);
+        if listed && (after - before).abs() > 1e-12 * before.abs() {
+            assert!(
+                declared(dependencies).contains(&known),
+                "{} depends on {known}: {before} {after}",
+                row.name
+            );
+        }
+    }
+}
 
 /// Each output and derivative, at the start: what changes with a number is declared.
 #[test]
@@ -62,7 +67,7 @@ fn what_an_output_depends_on_is_declared() {
             }
             let value = host.get(known.name);
             let other = match known.meant {
-                dielectric_elastomer_actuator::model::variables::Meant::Whole => value + 1.0,
+                Meant::Whole => value + 1.0,
                 _ => {
                     value * (1.0 + 1e-4)
                         + if value == 0.0 {
@@ -72,32 +77,19 @@ fn what_an_output_depends_on_is_declared() {
                         }
                 }
             };
-            let before: Vec<f64> = Si::VARIABLES.iter().map(|row| host.get(row.name)).collect();
+            let before = everything(&host);
             if host.set(known.name, other).is_err() {
                 continue;
             }
-            for (row, before) in Si::VARIABLES.iter().zip(before) {
-                let Access::Result { dependencies, .. } = row.access else {
-                    continue;
-                };
-                let listed = row.causality == Causality::Output || row.derivative_of.is_some();
-                let after = host.get(row.name);
-                let changed = (after - before).abs() > 1e-12 * before.abs();
-                if listed && changed {
-                    assert!(
-                        dependencies.at_start.contains(&known.name),
-                        "{} depends on {}: {before} {after}",
-                        row.name,
-                        known.name
-                    );
-                }
-            }
+            assert_declared(&host, &before, known.name, |dependencies| {
+                dependencies.at_start
+            });
             host.set(known.name, value).expect(known.name);
         }
     }
 }
 
-/// The same of inputs during the motion, and states.
+/// What changes with an input or a state during the motion is declared.
 #[test]
 fn what_an_output_depends_on_during_the_motion_is_declared() {
     for scene in SCENES {
@@ -115,24 +107,10 @@ fn what_an_output_depends_on_during_the_motion_is_declared() {
                 Kind::Real { nominal, .. } => nominal,
                 _ => 1.0,
             };
-            let before: Vec<f64> = Si::VARIABLES.iter().map(|row| host.get(row.name)).collect();
+            let before = everything(&host);
             host.set(known.name, value + 1e-3 * nominal)
                 .expect(known.name);
-            for (row, before) in Si::VARIABLES.iter().zip(before) {
-                let Access::Result { dependencies, .. } = row.access else {
-                    continue;
-                };
-                let listed = row.causality == Causality::Output || row.derivative_of.is_some();
-                let after = host.get(row.name);
-                if listed && (after - before).abs() > 1e-12 * before.abs() {
-                    assert!(
-                        dependencies.now.contains(&known.name),
-                        "{} depends on {}: {before} {after}",
-                        row.name,
-                        known.name
-                    );
-                }
-            }
+            assert_declared(&host, &before, known.name, |dependencies| dependencies.now);
             host.set(known.name, value).expect(known.name);
         }
     }

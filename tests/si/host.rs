@@ -5,6 +5,37 @@ use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{Kind, Variable};
 use dielectric_elastomer_actuator::si::{Instance, Si, value_reference};
 
+/// Everything beyond the paper, off the places where it is 0.
+pub const RICH: [(&str, f64); 27] = [
+    ("lambda_max", 4.0),
+    ("lambda_start", 1.1),
+    ("lambda_dot_start", 1e4),
+    ("charge_start", 3e-12),
+    ("k1", -0.1),
+    ("k2", 0.05),
+    ("k3", 0.01),
+    ("m_load", 1e-12),
+    ("k_load", 1.0),
+    ("l_load", 1.2e-4),
+    ("eta", 0.02),
+    ("b", 1e-8),
+    ("mu_1", 1e5),
+    ("mu_2", 1e5),
+    ("mu_3", 1e5),
+    ("tau_1", 1e-6),
+    ("tau_2", 2e-6),
+    ("tau_3", 3e-6),
+    ("J_1", 40.0),
+    ("J_2", 50.0),
+    ("xi1_start", 1.02),
+    ("xi2_start", 1.03),
+    ("xi3_start", 1.04),
+    ("G_p", 1e-9),
+    ("sigma", 1e-7),
+    ("E_conduction", 4e7),
+    ("force", 1e-5),
+];
+
 pub fn row(name: &str) -> (u32, &'static Variable<Si>) {
     let reference = value_reference(name).unwrap_or_else(|| panic!("no variable {name}"));
     (reference, &Si::VARIABLES[reference as usize])
