@@ -254,6 +254,27 @@ pub enum AtLimit {
     Terminate,
 }
 
+impl AtLimit {
+    /// Its number as an item of an enumeration: 1 for hold, 2 for terminate.
+    #[must_use]
+    pub fn item(self) -> f64 {
+        match self {
+            AtLimit::Hold => 1.0,
+            AtLimit::Terminate => 2.0,
+        }
+    }
+
+    /// The one of this number, 1 or 2.
+    #[must_use]
+    pub fn of_item(item: f64) -> AtLimit {
+        if item == 2.0 {
+            AtLimit::Terminate
+        } else {
+            AtLimit::Hold
+        }
+    }
+}
+
 /// The moment at which a motion reached a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Collapse<L> {

@@ -174,17 +174,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         Fixed,
         Kind::Enumeration(&ON_PULL_IN),
         1.0,
-        |scene| match scene.on_pull_in {
-            AtLimit::Hold => 1.0,
-            AtLimit::Terminate => 2.0,
-        },
-        |scene, value| {
-            scene.on_pull_in = if value == 1.0 {
-                AtLimit::Hold
-            } else {
-                AtLimit::Terminate
-            };
-        },
+        |scene| scene.on_pull_in.item(),
+        |scene, value| scene.on_pull_in = AtLimit::of_item(value),
     ),
     Row::result(
         "lambda",

@@ -231,17 +231,8 @@ pub(super) const CHOICES: [Row; 5] = [
         Fixed,
         Kind::Enumeration(&ON_PULL_IN),
         1.0,
-        |scene| match scene.on_pull_in {
-            AtLimit::Hold => 1.0,
-            AtLimit::Terminate => 2.0,
-        },
-        |scene, value| {
-            scene.on_pull_in = if value == 2.0 {
-                AtLimit::Terminate
-            } else {
-                AtLimit::Hold
-            };
-        },
+        |scene| scene.on_pull_in.item(),
+        |scene, value| scene.on_pull_in = AtLimit::of_item(value),
     ),
     Row::parameter(
         "on_breakdown",
