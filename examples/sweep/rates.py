@@ -14,13 +14,13 @@ import csv
 import os
 import sys
 import tempfile
+import time
 from functools import partial
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
-import psutil
-from distributed import LocalCluster
+from distributed import Client
 from fmpy import simulate_fmu
 from matplotlib.figure import Figure
 
@@ -83,26 +83,27 @@ def rates(fmu: Path, scenes: dict[str, np.ndarray], stop_time: float, most: int)
         with (
             tempfile.TemporaryDirectory() as folder,
             local_cluster(workers) as cluster,
+            Client(cluster) as client,
         ):
             first = {name: values[: 8 * workers] for name, values in scenes.items()}
             # in batches of one, so that every worker loads its actuator
             sweep(measure, first, Path(folder) / "first.parquet", cluster=cluster, batch=1, fmu=fmu)
-            start = processor_seconds(cluster)
+            start = processor_seconds(client)
             table = sweep(measure, scenes, Path(folder) / "timed.parquet", cluster=cluster, fmu=fmu)
-            taken = busiest(start)
+            taken = busiest(start, client)
             assert column(table, "lambda3_amplitude")[: every * PLAIN : every].tolist() == plain
         yield f"Dask, {workers} worker{'s' if workers > 1 else ''}", len(rows) / taken
 
 
-def processor_seconds(cluster: LocalCluster | None = None) -> dict[psutil.Process, float]:
-    """Processor time that this process and the workers of a cluster have taken so far."""
-    workers = [] if cluster is None else [psutil.Process(nanny.process.pid) for nanny in cluster.workers.values()]
-    return {process: sum(process.cpu_times()[:2]) for process in (psutil.Process(), *workers)}
+def processor_seconds(client: Client | None = None) -> dict[str, float]:
+    """Processor time that this process and the workers of a cluster have taken so far, by the name of the process."""
+    workers = {} if client is None else client.run(time.process_time)
+    return {"this process": time.process_time(), **workers}
 
 
-def busiest(start: dict[psutil.Process, float]) -> float:
+def busiest(start: dict[str, float], client: Client | None = None) -> float:
     """The most that any of these processes has taken since."""
-    return max(sum(process.cpu_times()[:2]) - before for process, before in start.items())
+    return max(now - start[process] for process, now in processor_seconds(client).items())
 
 
 def plain_amplitude(fmu: Path, scene: dict[str, float], stop_time: float) -> float:
