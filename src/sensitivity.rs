@@ -120,7 +120,8 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
     } = *experiment;
     let mut samples = Vec::with_capacity(times.len());
     let mut budget = MOST_SUBSTEPS;
-    let mut trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, tolerance);
+    let mut clock = Double::ZERO;
+    let mut trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
     let mut beside = Known::ALL.map(start_of);
     let Some(&last) = times.last() else {
         return Ok(samples);
@@ -129,7 +130,7 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
     for (index, ramp) in voltage.iter().enumerate() {
         let next = voltage.get(index + 1).map(|ramp| ramp.time);
         let border = next.map_or(last, |time| time.min(last));
-        scene.drive.since = *trajectory.time();
+        scene.drive.since = clock;
         scene.drive.voltage = line(
             voltage_scale * ramp.voltage,
             voltage_scale * ramp.slope / time_scale,
@@ -149,9 +150,9 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
                 }));
             }
             budget -= 1;
-            let begin = *trajectory.time();
+            let begin = clock;
             let (segment, progress) = trajectory
-                .advance_by_substep(&scene, rest)
+                .advance_by_substep(&scene, &mut clock, rest)
                 .map_err(Interruption::Failure)?;
             if let Progress::Stopped { limit, after } = progress {
                 let when = ramp.time + (passed + after) / time_scale;
@@ -182,7 +183,7 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
             };
         }
         // With the scale of time, the border moves along the motion.
-        let local = scene.seen_from(trajectory.time());
+        let local = scene.seen_from(&clock);
         let state = trajectory.state();
         let since = border - ramp.time;
         let moved = &mut beside[Known::TimeScale as usize];

@@ -79,9 +79,10 @@ pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome,
 /// # Errors
 /// [`Failure`] where the integration cannot go on.
 pub fn follow_one(scene: &Scene, end: f64, tolerance: f64) -> Result<Outcome, Failure> {
-    let trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, tolerance);
+    let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
     let mut trajectory = trajectory.recording_extremes();
-    let progress = trajectory.advance(scene, end)?;
+    let mut clock = Double::ZERO;
+    let progress = trajectory.advance(scene, &mut clock, end)?;
     Ok(Outcome {
         state: trajectory.state(),
         extremes: trajectory

@@ -1,8 +1,10 @@
 //! Where the motion meets a limit, and where it only starts next to one.
 
+mod clocked;
+
+use clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 
@@ -22,12 +24,12 @@ fn stop(position: f64, rate: f64, prestress: f64) -> Option<(Limit, f64)> {
         }),
         drive: Drive::constant(0.0, prestress),
     };
-    let mut trajectory = Trajectory::new(State { position, rate }, Double::ZERO, LIMITS, 1e-10);
+    let mut trajectory = Clocked::from(Trajectory::new(State { position, rate }, LIMITS, 1e-10));
     for _ in 0..3 {
         match trajectory.advance(&motion, 1.0) {
             Ok(Progress::Whole) => (),
             Ok(Progress::Stopped { limit, .. }) => {
-                return Some((limit, trajectory.time().value()));
+                return Some((limit, trajectory.clock.value()));
             }
             Err(failure) => panic!("{failure:?}"),
         }

@@ -1,12 +1,14 @@
 //! Derivatives of the motion by its parameters against difference quotients of a plain
 //! trajectory, and against a redundancy of the equation that is exact.
 
+mod clocked;
+
+use clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Polynomial;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sensitivity::{
     Experiment, Interruption, Known, Ramp, Sample, follow,
 };
-use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 
@@ -72,7 +74,7 @@ fn changed(known: Known, by: f64) -> Vec<f64> {
 /// The stretch at `TIMES` from a trajectory that steps from one time or border to the next.
 fn plain(scene: &Scene, voltage_scale: f64, time_scale: f64) -> Vec<f64> {
     let mut scene = *scene;
-    let mut trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, TOLERANCE);
+    let mut trajectory = Clocked::from(Trajectory::new(scene.start, scene.limits, TOLERANCE));
     let mut borders: Vec<f64> = VOLTAGE.iter().map(|ramp| ramp.time).chain(TIMES).collect();
     borders.sort_by(f64::total_cmp);
     borders.dedup();
@@ -90,7 +92,7 @@ fn plain(scene: &Scene, voltage_scale: f64, time_scale: f64) -> Vec<f64> {
             let mut voltage = Polynomial::constant(voltage_scale * ramp.voltage);
             voltage.set_derivative(1, voltage_scale * ramp.slope / time_scale);
             scene.drive.voltage = voltage;
-            scene.drive.since = *trajectory.time();
+            scene.drive.since = trajectory.clock;
             trajectory.restart();
         }
         if TIMES.contains(&border) {
@@ -199,12 +201,12 @@ fn a_collapse_is_told_with_its_time() {
     let Err(Interruption::Collapse(Limit::Upper, time)) = follow(&experiment) else {
         panic!("the actuator survives");
     };
-    let mut trajectory = Trajectory::new(scene.start, Double::ZERO, scene.limits, 1e-10);
+    let mut trajectory = Clocked::from(Trajectory::new(scene.start, scene.limits, 1e-10));
     scene.drive.voltage = Polynomial::constant(0.9);
     let progress = trajectory
         .advance(&scene, 500.0)
         .expect("it can be followed");
     let expected = format!("{progress:?}");
     assert!(expected.starts_with("Stopped"), "{expected}");
-    assert!(((time - 2.0) * 0.5 - trajectory.time().value()).abs() < 1e-7);
+    assert!(((time - 2.0) * 0.5 - trajectory.clock.value()).abs() < 1e-7);
 }

@@ -1,13 +1,16 @@
 //! The integrator on the motion of the actuator, against multiprecision
 //! references and against what must hold exactly.
 
+mod clocked;
+
+use clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::motion::{Load, energy};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::number::Number;
-use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Trajectory};
+use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Steps, Trajectory};
 use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, Sensitivity, State};
 use proptest::prelude::*;
 
@@ -46,12 +49,12 @@ fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Motion {
     motion
 }
 
-fn from_rest(tolerance: f64) -> Trajectory {
-    Trajectory::new(REST, Double::ZERO, LIMITS, tolerance)
+fn from_rest(tolerance: f64) -> Clocked<Steps> {
+    Clocked::from(Trajectory::new(REST, LIMITS, tolerance))
 }
 
 /// Follows the motion to `time` in steps of `step` and a last shorter one.
-fn follow(trajectory: &mut Trajectory, motion: &Motion, time: f64, step: f64) {
+fn follow(trajectory: &mut Clocked<Steps>, motion: &Motion, time: f64, step: f64) {
     let whole = (time / step).floor();
     for _ in 0..whole as u64 {
         advance(trajectory, motion, step);
@@ -62,7 +65,7 @@ fn follow(trajectory: &mut Trajectory, motion: &Motion, time: f64, step: f64) {
     }
 }
 
-fn advance(trajectory: &mut Trajectory, motion: &Motion, step: f64) {
+fn advance(trajectory: &mut Clocked<Steps>, motion: &Motion, step: f64) {
     assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
 }
 
@@ -132,7 +135,7 @@ fn escape_is_located_where_the_stretch_becomes_infinite() {
     ] {
         let upper = 1e6;
         let limits = Limits { upper, ..LIMITS };
-        let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, 1e-12);
+        let mut trajectory = Clocked::from(Trajectory::new(REST, limits, 1e-12));
         let motion = direct([0.0; 3], voltage, 0.0);
         let Ok(Progress::Stopped { limit, after }) = trajectory.advance(&motion, 100.0) else {
             panic!("voltage {voltage} did not escape");
@@ -155,7 +158,7 @@ fn the_lower_limit_stops_a_contraction() {
         lower: 0.5,
         upper: 10.0,
     };
-    let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, 1e-10);
+    let mut trajectory = Clocked::from(Trajectory::new(REST, limits, 1e-10));
     let motion = direct([0.0; 3], 0.0, -30.0);
     let stopped = trajectory.advance(&motion, 100.0);
     assert!(
@@ -221,7 +224,7 @@ fn a_motion_run_back_returns_to_its_start() {
         position,
         rate: -rate,
     };
-    let mut back = Trajectory::new(start, Double::ZERO, LIMITS, 1e-12);
+    let mut back = Clocked::from(Trajectory::new(start, LIMITS, 1e-12));
     advance(&mut back, &motion, 137.3);
     assert!((back.position() - 1.0).abs() < 1e-12 && back.rate().abs() < 1e-12);
 }
@@ -295,7 +298,7 @@ fn a_damped_motion_is_not_run_there_and_back() {
     let decay = 0.1_f64;
     let frequency = (1.0 - decay * decay).sqrt();
     for step in [0.3, 7.0] {
-        let mut trajectory = Trajectory::new(start, Double::ZERO, LIMITS, 1e-10);
+        let mut trajectory = Clocked::from(Trajectory::new(start, LIMITS, 1e-10));
         for k in 1..=40 {
             assert_eq!(trajectory.advance(&Damped, step), Ok(Progress::Whole));
             let time = step * f64::from(k);
@@ -313,19 +316,18 @@ fn a_damped_motion_rests_where_all_derivatives_vanish_only() {
         position: 1.0,
         rate,
     };
-    let mut resting = Trajectory::new(turn(0.0), Double::ZERO, LIMITS, 1e-10);
+    let mut resting = Clocked::from(Trajectory::new(turn(0.0), LIMITS, 1e-10));
     assert_eq!(resting.advance(&Damped, 1e3), Ok(Progress::Whole));
     assert_eq!(resting.state(), turn(0.0));
     // x'' vanishes here too, but x' does not.
-    let mut passing = Trajectory::new(
+    let mut passing = Clocked::from(Trajectory::new(
         State {
             position: 0.98,
             ..turn(0.1)
         },
-        Double::ZERO,
         LIMITS,
         1e-10,
-    );
+    ));
     assert_eq!(passing.advance(&Damped, 0.5), Ok(Progress::Whole));
     assert!(passing.position() > 1.0);
 }
@@ -431,7 +433,7 @@ fn extremes_are_recorded_exactly_and_whatever_the_steps() {
         }
         let mut before: Option<[f64; 2]> = None;
         for step in [0.3, 7.1, 300.0] {
-            let mut recording = from_rest(1e-12).recording_extremes();
+            let mut recording = from_rest(1e-12).with(Trajectory::recording_extremes);
             follow(&mut recording, motion, 300.0, step);
             let found = recording.extremes().expect("they are recorded");
             // Samples 0.0015 apart miss a turn by up to x''·0.00075²/2.
@@ -461,7 +463,7 @@ fn endpoint_only_steps_end_where_steps_with_dense_output_do() {
         let motion = alternating(SURFACE, 0.3, frequency);
         for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
             let mut endpoint_only = from_rest(tolerance);
-            let mut substeps = from_rest(1e-13).without_endpoint_steps();
+            let mut substeps = from_rest(1e-13).with(Trajectory::without_endpoint_steps);
             for step in [1000.0, 37.0, 11.3, 120.0] {
                 advance(&mut endpoint_only, &motion, step);
                 advance(&mut substeps, &motion, step);
@@ -491,7 +493,7 @@ fn a_motion_next_to_rest_goes_on() {
             drive: Drive::constant(voltage, 0.240_000_000_000_000_4),
         };
         for tolerance in [1e-6, 1e-10, 1e-14] {
-            let mut trajectory = Trajectory::new(start, Double::ZERO, LIMITS, tolerance);
+            let mut trajectory = Clocked::from(Trajectory::new(start, LIMITS, tolerance));
             advance(&mut trajectory, &motion, 30.0);
             assert!((trajectory.position() - start.position).abs() < 1e-9);
         }

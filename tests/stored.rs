@@ -1,8 +1,10 @@
 //! Motions that are stored, and stored bytes that are none.
 
+mod clocked;
+
+use clocked::Clocked;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
-use dielectric_elastomer_actuator::solver::double::Double;
-use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
+use dielectric_elastomer_actuator::solver::trajectory::{Progress, Steps, Trajectory};
 
 /// φ = 0.6, S = 0.5.
 fn constant() -> Scene {
@@ -25,12 +27,12 @@ fn alternating() -> Scene {
     scene
 }
 
-fn from_rest(tolerance: f64) -> Trajectory {
+fn from_rest(tolerance: f64) -> Clocked<Steps> {
     let Scene { start, limits, .. } = constant();
-    Trajectory::new(start, Double::ZERO, limits, tolerance)
+    Clocked::from(Trajectory::new(start, limits, tolerance))
 }
 
-fn advance(trajectory: &mut Trajectory, motion: &Scene, step: f64) {
+fn advance(trajectory: &mut Clocked<Steps>, motion: &Scene, step: f64) {
     assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
 }
 
@@ -44,8 +46,9 @@ fn a_stored_motion_goes_on_bit_for_bit() {
             if before > 0.0 {
                 advance(&mut trajectory, motion, before);
             }
-            let stored = serde_json::to_string(&trajectory).expect("it can be stored");
-            let mut restored: Trajectory = serde_json::from_str(&stored).expect("it was stored");
+            let stored = serde_json::to_string(&*trajectory).expect("it can be stored");
+            let again: Trajectory = serde_json::from_str(&stored).expect("it was stored");
+            let mut restored = Clocked::at(trajectory.clock, again);
             assert!(restored.is_valid());
             for _ in 0..100 {
                 assert_eq!(restored.state(), trajectory.state(), "after {before}");
@@ -59,12 +62,12 @@ fn a_stored_motion_goes_on_bit_for_bit() {
 /// Numbers that do not fit together as those of one motion are noticed.
 #[test]
 fn a_forged_motion_is_not_sound() {
-    let stored = |mut trajectory: Trajectory| {
+    let stored = |mut trajectory: Clocked<Steps>| {
         advance(&mut trajectory, &constant(), 77.7);
-        serde_json::to_value(&trajectory).expect("it can be stored")
+        serde_json::to_value(&*trajectory).expect("it can be stored")
     };
     let plain = stored(from_rest(1e-11));
-    let recording = stored(from_rest(1e-11).recording_extremes());
+    let recording = stored(from_rest(1e-11).with(Trajectory::recording_extremes));
     let sound =
         |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_valid());
     assert!(sound(plain.clone()) && sound(recording.clone()));

@@ -73,7 +73,7 @@ pub fn start(tolerance: f64) -> Trajectory {
         lower: 0.05,
         upper: 10.0,
     };
-    Trajectory::new(rest, Double::ZERO, limits, tolerance)
+    Trajectory::new(rest, limits, tolerance)
 }
 
 pub fn motion(case: &Case) -> Motion {
@@ -97,9 +97,9 @@ pub fn motion(case: &Case) -> Motion {
 
 fn follow(case: &Case, mut trajectory: Trajectory, states: &mut Vec<Pair>) -> Result<(), String> {
     let motion = motion(case);
-    let mut before = 0.0;
+    let (mut before, mut clock) = (0.0, Double::ZERO);
     for &time in &case.times {
-        match trajectory.advance(&motion, time - before) {
+        match trajectory.advance(&motion, &mut clock, time - before) {
             Ok(Progress::Whole) => {}
             other => return Err(format!("{other:?}")),
         }

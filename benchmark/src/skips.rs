@@ -68,8 +68,9 @@ pub fn run(case: &Case, least: Duration) {
 
 /// The stretch after `time` in steps of `step`.
 fn follow<E: Equation>(mut trajectory: Trajectory, equation: &E, time: f64, step: f64) -> f64 {
+    let mut clock = Double::ZERO;
     for _ in 0..(time / step).round() as u64 {
-        assert!(trajectory.advance(equation, step).is_ok());
+        assert!(trajectory.advance(equation, &mut clock, step).is_ok());
     }
     trajectory.position()
 }
@@ -101,7 +102,7 @@ fn integration<'a>(case: &'a Case, motion: &'a Motion) -> Vec<Skip<'a>> {
             lower: 0.05,
             upper: 10.0,
         };
-        Trajectory::new(start, Double::ZERO, limits, 1e-9)
+        Trajectory::new(start, limits, 1e-9)
     };
     let mut nothing = ideal;
     nothing.drive = Drive::constant(0.0, 0.0);

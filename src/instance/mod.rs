@@ -22,7 +22,7 @@ pub use values::Type;
 use serde::{Deserialize, Serialize};
 
 use crate::model::variables::Access;
-use crate::model::{Account, AtLimit, Model, Motion, Place, View};
+use crate::model::{Account, AtLimit, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -151,10 +151,7 @@ impl<M: Model> Instance<M> {
     pub fn view(&self) -> View<'_, M> {
         let scene = &self.scene;
         let (place, time, collapse) = match &self.course {
-            Course::Run(run) => {
-                let motion = run.motion();
-                (Place::On(motion), motion.time(), run.collapse())
-            }
+            Course::Run(run) => (Place::On(run.motion()), run.time(), run.collapse()),
             Course::Exchange(now) => {
                 let Exchange {
                     state,
@@ -352,7 +349,7 @@ impl<M: Model> Instance<M> {
     fn now(&self) -> Option<Double> {
         match &self.course {
             Course::Ahead => None,
-            Course::Run(run) => Some(*run.motion().time()),
+            Course::Run(run) => Some(*run.time()),
             Course::Exchange(now) => Some(now.time),
         }
     }
@@ -399,7 +396,7 @@ fn set_clock<M: Model>(
     current: f64,
     deviation: f64,
 ) {
-    if M::inputs_since(scene) == run.motion().time() {
+    if M::inputs_since(scene) == run.time() {
         for (reference, variable) in M::VARIABLES.iter().enumerate() {
             if let Access::Input { of, .. } = variable.access
                 && set & (1 << reference) == 0

@@ -38,6 +38,8 @@ fn allowance(step: f64, time: f64) -> f64 {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Run<M: Model> {
+    /// The present time, to which the motion has come.
+    clock: Double,
     motion: M::Motion,
     collapse: Option<Collapse<M::Limit>>,
     /// The scene has changed since the trajectory has followed it.
@@ -51,7 +53,8 @@ pub struct Run<M: Model> {
 impl<M: Model> Run<M> {
     pub(super) fn new(scene: &M::Scene, time: Double, tolerance: f64) -> Run<M> {
         Run {
-            motion: M::Motion::begin(scene, time, tolerance),
+            clock: time,
+            motion: M::Motion::begin(scene, &time, tolerance),
             collapse: None,
             stale: false,
             drift: 0.0,
@@ -62,10 +65,18 @@ impl<M: Model> Run<M> {
     /// Whether the numbers fit together as those of a motion of the scene.
     pub(super) fn is_sound(&self, scene: &M::Scene, tolerance: f64) -> bool {
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
-        self.motion.is_valid(scene, tolerance)
+        self.clock.is_finite()
+            && self.motion.is_valid(scene, tolerance)
             && collapsed.is_finite()
             && self.drift.is_finite()
             && self.cut_from.is_none_or(f64::is_finite)
+    }
+
+    /// The present time.
+    #[must_use]
+    #[inline]
+    pub fn time(&self) -> &Double {
+        &self.clock
     }
 
     /// The motion so far.
@@ -111,7 +122,7 @@ impl<M: Model> Run<M> {
         if !(shortest..=longest).contains(&step) {
             return Err(not_a_step(step));
         }
-        let ahead = -self.motion.time().since(Double::new(current));
+        let ahead = -self.clock.since(Double::new(current));
         if self.cut_from == Some(current) {
             return Err(self.asked_again(current));
         }
@@ -154,7 +165,7 @@ impl<M: Model> Run<M> {
             "the step from {} was discarded and is asked for again; the simulation should end at \
              time {}, or go on from there",
             Shortest(current),
-            Shortest(self.motion.time().value())
+            Shortest(self.clock.value())
         ))
     }
 
@@ -163,15 +174,16 @@ impl<M: Model> Run<M> {
         Fault::error(format!(
             "the current communication point {} is not the time {} at which the last step ended",
             Shortest(current),
-            Shortest(self.motion.time().value())
+            Shortest(self.clock.value())
         ))
     }
 
     /// Takes the host's time over as ours. The motion stands where it is; where what drives it
-    /// depends on time it goes on from there anew.
+    /// depends on time, it restarts there.
     pub(super) fn set_clock(&mut self, scene: &M::Scene, current: f64, deviation: f64) {
         self.drift += deviation;
-        self.stale |= self.motion.set_clock(scene, Double::new(current));
+        self.clock = Double::new(current);
+        self.stale |= M::depends_on_time(scene);
     }
 
     /// Whether the last step was too much work and ended early, and the motion can go on.
@@ -188,23 +200,23 @@ impl<M: Model> Run<M> {
     ) -> Result<Option<Event>, Fault> {
         self.cut_from = None;
         if self.collapse.is_some() {
-            self.motion.wait(Double::new(step));
+            self.clock = self.clock.add(Double::new(step));
             return Ok(None);
         }
         if self.stale {
             self.motion.restart();
             self.stale = false;
         }
-        match self.motion.advance(scene, step) {
+        match self.motion.advance(scene, &mut self.clock, step) {
             Ok(Progress::Whole) => Ok(None),
             Ok(Progress::Stopped { limit, after }) => {
-                let time = *self.motion.time();
+                let time = self.clock;
                 self.collapse = Some(Collapse { limit, time });
                 let text = M::describe(scene, limit, time.value());
                 let choice = M::choice(limit);
                 match M::at_limit(scene, limit) {
                     AtLimit::Hold => {
-                        self.motion.wait(Double::new(step).plus(-after));
+                        self.clock = time.add(Double::new(step).plus(-after));
                         Ok(Some(Event {
                             warning: false,
                             text: format!("{text}; it stays there ({choice} = hold)"),
@@ -222,7 +234,7 @@ impl<M: Model> Run<M> {
     /// Why the step ended early. One that was too much work can be gone on with.
     #[cold]
     fn fail(&mut self, failure: Failure, current: f64) -> Fault {
-        let time = Shortest(self.motion.time().value());
+        let time = Shortest(self.clock.value());
         let place = self.motion.whereabouts();
         let at = format!("the integration stopped at time {time} and {place}");
         match failure {

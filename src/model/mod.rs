@@ -101,6 +101,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// The moment from which the time of the inputs counts.
     fn inputs_since(scene: &Self::Scene) -> &Double;
 
+    /// Whether what drives the motion depends on time.
+    fn depends_on_time(scene: &Self::Scene) -> bool;
+
     /// What happens at a limit.
     fn at_limit(scene: &Self::Scene, limit: Self::Limit) -> AtLimit;
 
@@ -165,31 +168,27 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
 /// A motion that the model integrates, from communication point to communication point.
 pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
-    /// The motion of a scene from its start on.
-    fn begin(scene: &M::Scene, time: Double, tolerance: f64) -> Self;
+    /// The motion of a scene from its start at `time` on.
+    fn begin(scene: &M::Scene, time: &Double, tolerance: f64) -> Self;
 
-    /// Follows the motion for the time `step` > 0. The scene is the same as in the calls before,
+    /// Follows the motion for the time `step` > 0 from `clock`, the time to which it has come, and
+    /// moves the clock to where it has come then. The scene is the same as in the calls before,
     /// back to the last [`Motion::restart`].
     ///
     /// # Errors
     /// [`Failure`] where the integration cannot go on; the motion then stands where it ended.
-    fn advance(&mut self, scene: &M::Scene, step: f64) -> Result<Progress<M::Limit>, Failure>;
+    fn advance(
+        &mut self,
+        scene: &M::Scene,
+        clock: &mut Double,
+        step: f64,
+    ) -> Result<Progress<M::Limit>, Failure>;
 
     /// Starts anew from the present state: the scene has changed.
     fn restart(&mut self);
 
     /// Starts what it records anew, at the present.
     fn record_anew(&mut self, scene: &M::Scene);
-
-    /// Lets time pass in which nothing moves.
-    fn wait(&mut self, time: Double);
-
-    /// Sets the present time, and moves nothing. Returns whether what drives the motion depends
-    /// on time, so that a [`Motion::restart`] must follow.
-    fn set_clock(&mut self, scene: &M::Scene, time: Double) -> bool;
-
-    /// The present time of the model.
-    fn time(&self) -> &Double;
 
     /// The present state, where it lies stored as finite numbers: found out and copied without
     /// floating-point operations.

@@ -99,6 +99,10 @@ impl Model for Nondimensional {
         &scene.drive.since
     }
 
+    fn depends_on_time(scene: &Scene) -> bool {
+        !scene.drive.is_constant()
+    }
+
     #[inline]
     fn at_limit(scene: &Scene, _limit: Limit) -> AtLimit {
         scene.at_limit()
@@ -218,8 +222,8 @@ impl Scene {
 }
 
 impl Motion<Nondimensional> for Trajectory {
-    fn begin(scene: &Scene, time: Double, tolerance: f64) -> Trajectory {
-        let trajectory = Trajectory::new(scene.start, time, scene.limits, tolerance);
+    fn begin(scene: &Scene, _time: &Double, tolerance: f64) -> Trajectory {
+        let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
         if scene.records_extremes() {
             trajectory.recording_extremes()
         } else {
@@ -228,8 +232,13 @@ impl Motion<Nondimensional> for Trajectory {
     }
 
     #[inline]
-    fn advance(&mut self, scene: &Scene, step: f64) -> Result<Progress, Failure> {
-        Trajectory::advance(self, scene, step)
+    fn advance(
+        &mut self,
+        scene: &Scene,
+        clock: &mut Double,
+        step: f64,
+    ) -> Result<Progress, Failure> {
+        Trajectory::advance(self, scene, clock, step)
     }
 
     #[inline]
@@ -239,20 +248,6 @@ impl Motion<Nondimensional> for Trajectory {
 
     fn record_anew(&mut self, scene: &Scene) {
         self.record_extremes_anew(scene.records_extremes());
-    }
-
-    fn wait(&mut self, time: Double) {
-        Trajectory::wait(self, time);
-    }
-
-    fn set_clock(&mut self, scene: &Scene, time: Double) -> bool {
-        Trajectory::set_clock(self, time);
-        !scene.drive.is_constant()
-    }
-
-    #[inline]
-    fn time(&self) -> &Double {
-        Trajectory::time(self)
     }
 
     #[inline]

@@ -32,21 +32,20 @@ macro_rules! either {
 }
 
 impl Course {
-    /// A course from this state on, at a time in s.
+    /// A course from this state on.
     pub fn of(
         scene: &SiScene,
         motion: &DeviceMotion,
         scales: &Scales,
         state: &SiState,
-        (clock, tolerance): (Double, f64),
+        tolerance: f64,
     ) -> Course {
         let start = full_state(motion, scales, state);
-        let time = scales.time(clock);
         if motion.is_plain() {
-            let plain = Trajectory::new(start.motion, time, scene.limits, tolerance);
+            let plain = Trajectory::new(start.motion, scene.limits, tolerance);
             Course::Plain(Box::new(plain))
         } else {
-            let coupled = coupled::Trajectory::new(start, time, scene.limits, tolerance);
+            let coupled = coupled::Trajectory::new(start, scene.limits, tolerance);
             Course::Coupled(Box::new(coupled))
         }
     }
@@ -59,18 +58,17 @@ impl Course {
         motion: &DeviceMotion,
         scales: &Scales,
         state: &SiState,
-        (clock, tolerance): (Double, f64),
+        tolerance: f64,
     ) {
         let start = full_state(motion, scales, state);
-        let time = scales.time(clock);
         match self {
             Course::Plain(plain) if motion.is_plain() => {
-                **plain = Trajectory::new(start.motion, time, scene.limits, tolerance);
+                **plain = Trajectory::new(start.motion, scene.limits, tolerance);
             }
             Course::Coupled(coupled) if !motion.is_plain() => {
-                coupled.begin_anew(start, time, scene.limits, tolerance);
+                coupled.begin_anew(start, scene.limits, tolerance);
             }
-            other => *other = Course::of(scene, motion, scales, state, (clock, tolerance)),
+            other => *other = Course::of(scene, motion, scales, state, tolerance),
         }
     }
 
@@ -88,10 +86,6 @@ impl Course {
 
     pub fn state(&self) -> State {
         either!(self, trajectory => trajectory.state())
-    }
-
-    pub fn time(&self) -> Double {
-        either!(self, trajectory => *trajectory.time())
     }
 
     /// The first-order states.
@@ -129,23 +123,16 @@ impl Course {
         either!(self, trajectory => trajectory.restart());
     }
 
-    pub fn wait(&mut self, time: Double) {
-        either!(self, trajectory => trajectory.wait(time));
-    }
-
-    pub fn set_clock(&mut self, time: Double) {
-        either!(self, trajectory => trajectory.set_clock(time));
-    }
-
-    /// Follows the motion for a nondimensional time.
+    /// Follows the motion for a nondimensional time, and its clock with it.
     pub fn advance(
         &mut self,
         motion: &DeviceMotion,
+        clock: &mut Double,
         step: f64,
     ) -> Result<Progress<coupled::Event>, Failure> {
         match self {
             Course::Plain(trajectory) => {
-                let progress = trajectory.advance(&motion.plain(), step)?;
+                let progress = trajectory.advance(&motion.plain(), clock, step)?;
                 Ok(match progress {
                     Progress::Whole => Progress::Whole,
                     Progress::Stopped { limit, after } => Progress::Stopped {
@@ -154,7 +141,7 @@ impl Course {
                     },
                 })
             }
-            Course::Coupled(trajectory) => trajectory.advance(motion, step),
+            Course::Coupled(trajectory) => trajectory.advance(motion, clock, step),
         }
     }
 

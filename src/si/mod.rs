@@ -115,6 +115,10 @@ impl Model for Si {
         &scene.since
     }
 
+    fn depends_on_time(scene: &SiScene) -> bool {
+        scene.depends_on_time()
+    }
+
     fn at_limit(scene: &SiScene, limit: SiLimit) -> AtLimit {
         match limit {
             SiLimit::Stretch(_) => scene.at_pull_in(),

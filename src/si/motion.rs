@@ -1,7 +1,7 @@
 //! The motion of the actuator in SI units, from communication point to communication point.
 //!
-//! The time of the host is a sum of seconds in double length, divided once by the unit of time
-//! at each step: what is rounded does not add up.
+//! The clock is in seconds, the motion that is followed in its own unit of time. At each step the
+//! clock is divided by that unit: what is rounded does not add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -21,9 +21,9 @@ use crate::solver::trajectory::{Failure, Progress};
 /// A motion in SI units.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SiMotion {
-    /// Present time of the model in s.
-    clock: Double,
     course: Course,
+    /// By how much the course is ahead of the clock: the rounding of its last step, nondimensional.
+    lead: f64,
     /// What the course follows, nondimensional.
     motion: DeviceMotion,
     scales: Scales,
@@ -115,20 +115,25 @@ impl SiMotion {
         self.breakdown
     }
 
-    /// The present as the motion that is followed sees it.
-    fn at_present<T>(&self, look: impl FnOnce(&LocalDevice, &Stage) -> T) -> T {
+    /// The nondimensional time to which the course has come, the clock being at `time`.
+    fn reached(&self, time: &Double) -> Double {
+        self.scales.time(*time).plus(self.lead)
+    }
+
+    /// The present as the motion that is followed sees it, the clock being at `time`.
+    fn at_present<T>(&self, time: &Double, look: impl FnOnce(&LocalDevice, &Stage) -> T) -> T {
         let (origin, position) = self.stretch_from_origin();
         let stage = Stage {
             position,
             rate: self.course.state().rate,
             internal: self.course.internal(),
         };
-        look(&self.motion.at(&self.course.time(), &origin), &stage)
+        look(&self.motion.at(&self.reached(time), &origin), &stage)
     }
 
     /// Follows what the scene has become. Where only inputs have changed, the course goes on
     /// with what it knows; where the actuator has, it begins anew from the state in SI units.
-    fn refold(&mut self, scene: &SiScene) {
+    fn refold(&mut self, scene: &SiScene, time: &Double) {
         use crate::solver::coupled::LocalCoupledEquation;
         self.stale = false;
         let (motion, scales) = (scene.motion(), scene.scales());
@@ -137,15 +142,15 @@ impl SiMotion {
             && scales == self.scales;
         if same {
             let records = self.motion.records_energy;
-            let before = records.then(|| self.at_present(|local, _| local.load(0.0).source));
+            let before = records.then(|| self.at_present(time, |local, _| local.load(0.0).source));
             self.motion.drive = motion.drive;
             self.course.restart();
             if let Some(before) = before {
-                self.book_step(before);
+                self.book_step(time, before);
             }
             return;
         }
-        let charge = self.at_present(|local, stage| {
+        let charge = self.at_present(time, |local, stage| {
             let load = local.load(0.0);
             local.membrane_voltage(&load, stage) * local.capacitance(local.stretch(stage.position))
         });
@@ -154,9 +159,9 @@ impl SiMotion {
             ..self.state()
         };
         let (exchanged, extremes) = (self.exchanged(), self.extremes());
-        let begin = (self.clock, self.tolerance);
         self.course
-            .begin_anew(scene, &motion, &scales, &state, begin);
+            .begin_anew(scene, &motion, &scales, &state, self.tolerance);
+        self.lead = 0.0;
         (self.charge, self.dashpots) = (state.charge, state.dashpots);
         (self.motion, self.scales) = (motion, scales);
         self.earlier = extremes;
@@ -166,23 +171,24 @@ impl SiMotion {
     }
 
     /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
-    fn book_step(&mut self, before: f64) {
+    fn book_step(&mut self, time: &Double, before: f64) {
         if !self.motion.records_energy {
             return;
         }
-        let exchanged = self.at_present(|local, stage| local.exchanged_by_step(before, stage));
+        let exchanged =
+            self.at_present(time, |local, stage| local.exchanged_by_step(before, stage));
         self.course.book(&exchanged.all());
     }
 }
 
 impl Motion<Si> for SiMotion {
-    fn begin(scene: &SiScene, time: Double, tolerance: f64) -> SiMotion {
+    fn begin(scene: &SiScene, time: &Double, tolerance: f64) -> SiMotion {
         scene.thresholds.prepare();
         let (motion, scales) = (scene.motion(), scene.scales());
-        let course = Course::of(scene, &motion, &scales, &scene.start, (time, tolerance));
+        let course = Course::of(scene, &motion, &scales, &scene.start, tolerance);
         let mut begun = SiMotion {
-            clock: time,
             course,
+            lead: 0.0,
             motion,
             scales,
             tolerance,
@@ -194,66 +200,67 @@ impl Motion<Si> for SiMotion {
         };
         Motion::record_anew(&mut begun, scene);
         // An ideal source charges the membrane at once.
-        let capacitance =
-            begun.at_present(|local, stage| local.capacitance(local.stretch(stage.position)));
+        let capacitance = begun.at_present(time, |local, stage| {
+            local.capacitance(local.stretch(stage.position))
+        });
         let before = scene.source_before(&scales, capacitance);
-        begun.book_step(before);
+        begun.book_step(time, before);
         begun
     }
 
-    fn advance(&mut self, scene: &SiScene, step: f64) -> Result<Progress<SiLimit>, Failure> {
+    fn advance(
+        &mut self,
+        scene: &SiScene,
+        clock: &mut Double,
+        step: f64,
+    ) -> Result<Progress<SiLimit>, Failure> {
         if self.stale {
-            self.refold(scene);
+            self.refold(scene, clock);
         }
-        let (begin, second) = (self.clock, self.scales.time);
+        let (begin, second) = (*clock, self.scales.time);
         let target = begin.plus(step).renormalized();
         let end = self.scales.time(target);
+        let mut reached = self.reached(clock);
         loop {
-            let rest = end.since(self.course.time());
-            if rest <= 0.0 {
-                self.clock = target;
+            let rest = end.since(reached);
+            let progress = if rest > 0.0 {
+                self.course.advance(&self.motion, &mut reached, rest)
+            } else {
+                Ok(Progress::Whole)
+            };
+            if progress == Ok(Progress::Whole) {
+                *clock = target;
+                self.lead = reached.since(end);
                 return Ok(Progress::Whole);
             }
-            let progress = self.course.advance(&self.motion, rest);
-            // What is left of the step, in s.
-            let passed = |left: f64| step - left * second;
-            match progress {
-                Ok(Progress::Whole) => {
-                    self.clock = target;
-                    return Ok(Progress::Whole);
-                }
-                Ok(Progress::Stopped { limit, .. }) => {
-                    let after = passed(end.since(self.course.time()));
-                    self.clock = begin.plus(after).renormalized();
-                    let limit = match limit {
-                        coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
-                        coupled::Event::Margin => {
-                            self.breakdown = self.breakdown.or(Some(self.clock));
-                            if let Course::Coupled(trajectory) = &mut self.course {
-                                trajectory.pass_margin();
-                            }
-                            if scene.at_breakdown() == OnBreakdown::Flag {
-                                continue;
-                            }
-                            SiLimit::Breakdown
+            // In s.
+            let after = step - end.since(reached) * second;
+            *clock = begin.plus(after).renormalized();
+            self.lead = reached.since(self.scales.time(*clock));
+            let limit = match progress {
+                Ok(Progress::Whole) => continue,
+                Ok(Progress::Stopped { limit, .. }) => match limit {
+                    coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
+                    coupled::Event::Margin => {
+                        self.breakdown = self.breakdown.or(Some(*clock));
+                        if let Course::Coupled(trajectory) = &mut self.course {
+                            trajectory.pass_margin();
                         }
-                    };
-                    return Ok(Progress::Stopped { limit, after });
-                }
-                Err(failure) => {
-                    let after = passed(end.since(self.course.time()));
-                    self.clock = begin.plus(after).renormalized();
-                    return Err(match failure {
-                        Failure::SubstepTooShort { length, .. } => Failure::SubstepTooShort {
-                            length: length * second,
-                            after,
-                        },
-                        Failure::TooManySubsteps { most, .. } => {
-                            Failure::TooManySubsteps { most, after }
+                        if scene.at_breakdown() == OnBreakdown::Flag {
+                            continue;
                         }
-                    });
+                        SiLimit::Breakdown
+                    }
+                },
+                Err(Failure::SubstepTooShort { length, .. }) => {
+                    let length = length * second;
+                    return Err(Failure::SubstepTooShort { length, after });
                 }
-            }
+                Err(Failure::TooManySubsteps { most, .. }) => {
+                    return Err(Failure::TooManySubsteps { most, after });
+                }
+            };
+            return Ok(Progress::Stopped { limit, after });
         }
     }
 
@@ -265,21 +272,6 @@ impl Motion<Si> for SiMotion {
         let records = scene.records_extremes();
         self.earlier = None;
         self.course.record_extremes_anew(records);
-    }
-
-    fn wait(&mut self, time: Double) {
-        self.clock = self.clock.add(time);
-        self.course.wait(self.scales.time(time));
-    }
-
-    fn set_clock(&mut self, scene: &SiScene, time: Double) -> bool {
-        self.clock = time;
-        self.course.set_clock(self.scales.time(time));
-        scene.depends_on_time()
-    }
-
-    fn time(&self) -> &Double {
-        &self.clock
     }
 
     fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
@@ -298,7 +290,7 @@ impl Motion<Si> for SiMotion {
         } = self.scales;
         sound
             && self.tolerance == tolerance
-            && self.clock.is_finite()
+            && self.lead.is_finite()
             && self.motion.is_plain() == self.course.is_plain()
             && [
                 time,

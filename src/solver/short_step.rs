@@ -396,9 +396,9 @@ mod tests {
                 lower: 1e-3,
                 upper: 1e3,
             };
-            let exact = Trajectory::new(state, Double::ZERO, limits, 1e-14);
+            let exact = Trajectory::new(state, limits, 1e-14);
             let mut exact = exact.without_endpoint_steps();
-            let followed = exact.advance(&equation, length);
+            let followed = exact.advance(&equation, &mut Double::new(0.0), length);
             followed.expect("it can be followed");
             let position = solved.end.position - exact.position();
             let rate = (solved.end.rate - exact.rate()) * time_scale;

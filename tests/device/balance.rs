@@ -1,13 +1,15 @@
 //! The balance of energy of random actuators under random inputs, with jumps.
 
+use crate::clocked::Clocked;
 use crate::scene::{Present, start};
 use dielectric_elastomer_actuator::actuator::device::{
     Branch, Damping, Device, DeviceMotion, Elasticity, Locking, Permittivity, Port, Source, Spring,
 };
 use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
 use dielectric_elastomer_actuator::actuator::{Drive, Parameters};
+use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
-    CoupledEquation, MOST_STATES, Progress, Stage, Trajectory,
+    CoupledEquation, MOST_STATES, Progress, Stage,
 };
 use dielectric_elastomer_actuator::solver::double::Double;
 use proptest::prelude::*;
@@ -80,8 +82,8 @@ prop_compose! {
 }
 
 /// Steps an ideal source with the bookkeeping that a host has to do.
-fn set(motion: &mut DeviceMotion, trajectory: &mut Trajectory, drive: Drive) {
-    let time = *trajectory.time();
+fn set(motion: &mut DeviceMotion, trajectory: &mut Clocked<Carried>, drive: Drive) {
+    let time = trajectory.clock;
     let before = motion.drive.at(&time).voltage(0.0);
     motion.drive = drive;
     motion.drive.since = time;

@@ -1,5 +1,6 @@
 //! What is off costs nothing and changes nothing: the device is then the paper's actuator.
 
+use crate::clocked::Clocked;
 use crate::scene::{LIMITS, follow, start};
 use dielectric_elastomer_actuator::actuator::device::{Device, DeviceMotion, Spring};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
@@ -56,11 +57,11 @@ fn both_integrators_follow_the_same_motion() {
         position: 1.0,
         rate: 0.0,
     };
-    let mut reference = Trajectory::new(rest, Double::ZERO, LIMITS, 1e-13);
+    let mut reference = Clocked::from(Trajectory::new(rest, LIMITS, 1e-13));
     for k in 1..=200 {
         let time = f64::from(k) * 3.7;
         follow(&mut ours, &coupled, Double::new(time), f64::INFINITY);
-        let step = time - reference.time().value();
+        let step = time - reference.clock.value();
         reference.advance(&plain, step).expect("a motion");
         let error = ours.position() - reference.position();
         assert!(error.abs() < 3e-13, "{time}: {error:e}");

@@ -9,7 +9,7 @@ use dielectric_elastomer_actuator::actuator::device::{
 };
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
 use dielectric_elastomer_actuator::pull_in::device::{dynamic, quasi_static};
-use dielectric_elastomer_actuator::solver::coupled::{CoupledEquation, Stage};
+use dielectric_elastomer_actuator::solver::coupled::{CoupledEquation, Stage, Trajectory};
 use dielectric_elastomer_actuator::solver::double::Double;
 
 fn sheet(aspect: f64) -> Device {
@@ -117,7 +117,7 @@ fn appendix_a_in_si_units() {
     close(scales.time * 1e6, 77.209_143_648_218_29, 1e-13);
     close(0.5 * scales.voltage, 32_902.998_232, 1e-5);
     let motion = motion(device.nondimensional(), 0.5, 0.0);
-    let mut trajectory = start(&motion, 0.0, 1e-12).recording_extremes();
+    let mut trajectory = start(&motion, 0.0, 1e-12).with(Trajectory::recording_extremes);
     // 16.7211477513329 units of time.
     let period = scales.time(Double::new(1.291_025_498_695_744_5e-3));
     follow(&mut trajectory, &motion, period, f64::INFINITY);

@@ -1,10 +1,12 @@
 //! A reference scene: what `tests/reference/device/*.json` describes, and our motion of it.
 
+use crate::clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::{DeviceMotion, Exchanged, Source, Stored};
 use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
 use dielectric_elastomer_actuator::solver::State;
+use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, FullState, LocalCoupledEquation, Progress, Stage, Trajectory,
 };
@@ -145,7 +147,7 @@ impl Scene {
 }
 
 /// A motion from rest at λ = 1 with this charge.
-pub fn start(motion: &DeviceMotion, charge: f64, tolerance: f64) -> Trajectory {
+pub fn start(motion: &DeviceMotion, charge: f64, tolerance: f64) -> Clocked<Carried> {
     start_between(motion, charge, tolerance, LIMITS)
 }
 
@@ -155,7 +157,7 @@ pub fn start_between(
     charge: f64,
     tolerance: f64,
     limits: Limits,
-) -> Trajectory {
+) -> Clocked<Carried> {
     let mut state = FullState::of(State {
         position: 1.0,
         rate: 0.0,
@@ -167,7 +169,7 @@ pub fn start_between(
     for _ in motion.device.present_branches() {
         *states.next().expect("room") = 1.0;
     }
-    Trajectory::new(state, Double::ZERO, limits, tolerance)
+    Clocked::from(Trajectory::new(state, limits, tolerance))
 }
 
 /// The present of a motion.
@@ -182,9 +184,9 @@ pub struct Present {
 }
 
 impl Present {
-    pub fn of(motion: &DeviceMotion, trajectory: &Trajectory) -> Present {
+    pub fn of(motion: &DeviceMotion, trajectory: &Clocked<Carried>) -> Present {
         let (origin, position) = trajectory.position_from_origin();
-        let local = motion.at(trajectory.time(), &origin);
+        let local = motion.at(&trajectory.clock, &origin);
         let stage = Stage {
             position,
             rate: trajectory.rate(),
@@ -208,9 +210,9 @@ impl Present {
 }
 
 /// Follows the motion up to a time in steps no longer than `step`.
-pub fn follow(trajectory: &mut Trajectory, motion: &DeviceMotion, target: Double, step: f64) {
+pub fn follow(trajectory: &mut Clocked<Carried>, motion: &DeviceMotion, target: Double, step: f64) {
     loop {
-        let rest = target.since(*trajectory.time());
+        let rest = target.since(trajectory.clock);
         if rest <= 0.0 {
             return;
         }

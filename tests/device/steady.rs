@@ -29,7 +29,7 @@ fn the_steady_state_has_the_exact_amplitude_and_phase() {
             Double::new(whole * period),
             period,
         );
-        let mut trajectory = trajectory.recording_extremes();
+        trajectory.record_extremes_anew(true);
         let (mut mean, mut cosine, mut sine) = (0.0, 0.0, 0.0);
         for k in 1..=SAMPLES {
             let part = k as f64 / SAMPLES as f64;

@@ -358,8 +358,9 @@ fn a_step_just_above_the_threshold_from_rest_pulls_in() {
                 lower: 0.1,
                 upper: 4.0,
             };
-            let mut trajectory = Trajectory::new(rest, Double::ZERO, limits, 1e-13);
-            let outcome = trajectory.advance(&motion, 300.0 * period);
+            let mut clock = Double::ZERO;
+            let mut trajectory = Trajectory::new(rest, limits, 1e-13);
+            let outcome = trajectory.advance(&motion, &mut clock, 300.0 * period);
             let passed = matches!(outcome, Ok(Progress::Stopped { .. }));
             assert_eq!(passed, pulls_in, "{case}: {device:?} {fold:?}");
         }

@@ -1,7 +1,9 @@
 //! What a host does with a motion: saves it, changes its inputs, awaits events.
 
+use crate::clocked::Clocked;
 use crate::scene::{LIMITS, Scene, follow, number, read, start, start_between};
 use dielectric_elastomer_actuator::actuator::device::{Breakdown, DeviceMotion};
+use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{Event, Progress, Trajectory};
 use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
@@ -31,14 +33,16 @@ fn a_saved_motion_goes_on_bit_for_bit() {
         let scene = Scene::of(&read(name));
         for records in [false, true] {
             let motion = scene.motion(records);
-            let mut trajectory = start(&motion, scene.charge, 1e-9).recording_extremes();
+            let mut trajectory =
+                start(&motion, scene.charge, 1e-9).with(Trajectory::recording_extremes);
             for k in 0..40 {
                 if k % 7 == 3 {
                     trajectory.restart();
                 }
                 let step = 3.1 + f64::from(k) * 11.3;
-                let bytes = postcard::to_allocvec(&trajectory).expect("bytes");
-                let mut restored: Trajectory = postcard::from_bytes(&bytes).expect("a motion");
+                let bytes = postcard::to_allocvec(&*trajectory).expect("bytes");
+                let again: Trajectory = postcard::from_bytes(&bytes).expect("a motion");
+                let mut restored = Clocked::at(trajectory.clock, again);
                 assert!(restored.is_valid(), "{name} {k}");
                 assert!(restored.keeps_to(LIMITS, 1e-9));
                 assert_eq!(all(&restored), all(&trajectory), "{name} {k}");
@@ -62,7 +66,7 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
         let motion = scene.motion(true);
         let mut trajectory = start(&motion, scene.charge, 1e-9);
         follow(&mut trajectory, &motion, Double::new(33.3), f64::INFINITY);
-        let bytes = postcard::to_allocvec(&trajectory).expect("bytes");
+        let bytes = postcard::to_allocvec(&*trajectory).expect("bytes");
         for place in (0..bytes.len()).step_by(3) {
             for change in [0x01, 0x80, 0xff] {
                 let mut damaged = bytes.clone();
@@ -71,7 +75,7 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
                     continue;
                 };
                 if restored.is_valid() {
-                    let _ = restored.advance(&motion, 1.0);
+                    let _ = restored.advance(&motion, &mut Double::new(33.3), 1.0);
                     assert!(restored.position().is_finite(), "{name}, byte {place}");
                 }
             }
@@ -99,7 +103,7 @@ fn restarts_at_every_step_keep_the_tolerance() {
             let target = scales.time(Double::new(number(&row["t_s"])));
             loop {
                 trajectory.restart();
-                let rest = target.since(*trajectory.time());
+                let rest = target.since(trajectory.clock);
                 if rest <= 0.0 {
                     break;
                 }
@@ -150,8 +154,8 @@ fn breakdown_is_located() {
 fn a_short_breakdown_is_located() {
     let scene = Scene::of(&read("H_ac_damped"));
     let mut motion = scene.motion(false);
-    let field = |motion: &DeviceMotion, trajectory: &Trajectory| {
-        let voltage = motion.drive.at(trajectory.time()).voltage(0.0);
+    let field = |motion: &DeviceMotion, trajectory: &Clocked<Carried>| {
+        let voltage = motion.drive.at(&trajectory.clock).voltage(0.0);
         voltage.abs() * trajectory.position().powi(2)
     };
     let mut trajectory = start(&motion, 0.0, 1e-12);

@@ -42,7 +42,7 @@ fn the_stretch_becomes_infinite_when_it_should() {
             for tolerance in [1e-9, 1e-10, 1e-12, 1e-14] {
                 for step in [100.0, 0.1] {
                     let limits = Limits { upper, ..WIDE };
-                    let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, tolerance);
+                    let mut trajectory = Clocked::from(Trajectory::new(REST, limits, tolerance));
                     let mut steps = 0.0;
                     let after = loop {
                         match trajectory.advance(&motion, step) {
@@ -173,7 +173,7 @@ fn an_alternating_voltage_drives_the_actuator_to_infinity() {
             upper: stretch,
             ..WIDE
         };
-        let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, tolerance);
+        let mut trajectory = Clocked::from(Trajectory::new(REST, limits, tolerance));
         let stopped = trajectory.advance(&motion, 2000.0);
         let Ok(Progress::Stopped { after, .. }) = stopped else {
             panic!("{stopped:?}")
@@ -182,7 +182,7 @@ fn an_alternating_voltage_drives_the_actuator_to_infinity() {
         assert_at_most((after - 1251.0).abs(), most, &what);
 
         let limits = Limits { upper: 1e4, ..WIDE };
-        let mut trajectory = Trajectory::new(REST, Double::ZERO, limits, tolerance);
+        let mut trajectory = Clocked::from(Trajectory::new(REST, limits, tolerance));
         let stopped = trajectory.advance(&motion, 2000.0);
         let Ok(Progress::Stopped { after, .. }) = stopped else {
             panic!("{stopped:?}")

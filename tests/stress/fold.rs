@@ -1,7 +1,6 @@
 //! Around the fold: just under pull-in the motion turns, just over it passes.
 
 use dielectric_elastomer_actuator::pull_in::{self, Threshold};
-use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 
@@ -37,7 +36,7 @@ fn threshold(surface: [f64; 3], prestress: f64) -> Threshold {
 
 /// Whether the motion from rest passes the stretch of the fold by 0.1 %, before
 /// it turns or, if it has turned, in the rest of one long step.
-fn passes(mut trajectory: Trajectory, motion: &Motion, step: f64) -> bool {
+fn passes(mut trajectory: Clocked<Steps>, motion: &Motion, step: f64) -> bool {
     for _ in 0..(LONG / step) as u32 {
         match trajectory.advance(motion, step) {
             Ok(Progress::Whole) => {
@@ -56,10 +55,10 @@ fn passes(mut trajectory: Trajectory, motion: &Motion, step: f64) -> bool {
     false
 }
 
-fn from_rest_to_fold(threshold: Threshold, tolerance: f64) -> Trajectory {
+fn from_rest_to_fold(threshold: Threshold, tolerance: f64) -> Clocked<Steps> {
     let upper = 1.001 / threshold.thickness_stretch.sqrt();
     let limits = Limits { upper, ..WIDE };
-    Trajectory::new(REST, Double::ZERO, limits, tolerance)
+    Clocked::from(Trajectory::new(REST, limits, tolerance))
 }
 
 /// No false pull-in below, no missed one above, at any tolerance.
@@ -75,7 +74,7 @@ fn pull_in_is_told_as_near_to_its_voltage_as_the_tolerance_promises() {
                     let motion = motion(&actuator(surface), &Load::constant(voltage, prestress));
                     let mut trajectory = from_rest_to_fold(threshold, tolerance);
                     if !orbits {
-                        trajectory = trajectory.without_orbits();
+                        trajectory = trajectory.with(Trajectory::without_orbits);
                     }
                     assert_eq!(
                         passes(trajectory, &motion, if orbits { LONG } else { 1.0 }),

@@ -147,7 +147,7 @@ fn energy_given_by_a_sequence_of_inputs_stays_over_a_million_units_of_time() {
         let mut random = Random(7);
         let (mut trajectory, mut reference) = (from_rest(tolerance), Taylor::new(1.0, 0.0));
         if !orbits {
-            trajectory = trajectory.without_orbits();
+            trajectory = trajectory.with(Trajectory::without_orbits);
         }
         for last in [false, false, false, false, true] {
             let mut load = Load::constant(random.between(0.2, 0.6), random.between(-0.5, 0.5));

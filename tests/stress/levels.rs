@@ -27,7 +27,7 @@ fn levels() -> Vec<(&'static str, bool, Level)> {
 
 /// The states at 200 points.
 fn states(level: Level, motion: &Motion, step: f64) -> Vec<State> {
-    let mut trajectory = from_rest(1e-12).with_level(level);
+    let mut trajectory = from_rest(1e-12).with(|motion| motion.with_level(level));
     let next = |_| {
         advance(&mut trajectory, motion, step);
         trajectory.state()
@@ -72,7 +72,7 @@ fn all_levels_give_the_same_motion() {
 
 /// A motion from rest under a load that changes on the way, up to a limit if it comes to one.
 fn changing(level: Level, motions: &[Motion], step: f64) -> Vec<State> {
-    let mut trajectory = from_rest(1e-10).with_level(level);
+    let mut trajectory = from_rest(1e-10).with(|motion| motion.with_level(level));
     let mut states = Vec::new();
     for motion in motions {
         trajectory.restart();

@@ -7,6 +7,8 @@
 
 mod accuracy;
 mod allowed;
+#[path = "../clocked/mod.rs"]
+mod clocked;
 mod doubled;
 mod escape;
 mod fold;
@@ -22,12 +24,12 @@ mod steps;
 mod traps;
 mod varying;
 
+use clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::Limits;
-use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
+use dielectric_elastomer_actuator::solver::trajectory::{Progress, Steps, Trajectory};
 use independent::{Actuator, Load, Taylor};
 
 const REST: State = State {
@@ -70,13 +72,13 @@ fn alternating(amplitude: f64, frequency: f64) -> Load {
     }
 }
 
-fn from_rest(tolerance: f64) -> Trajectory {
-    Trajectory::new(REST, Double::ZERO, WIDE, tolerance)
+fn from_rest(tolerance: f64) -> Clocked<Steps> {
+    Clocked::from(Trajectory::new(REST, WIDE, tolerance))
 }
 
 /// Follows the motion for `step`; no limit may be met.
 #[track_caller]
-fn advance(trajectory: &mut Trajectory, motion: &Motion, step: f64) {
+fn advance(trajectory: &mut Clocked<Steps>, motion: &Motion, step: f64) {
     assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
 }
 

@@ -12,7 +12,7 @@ fn unit(actuator: &Actuator) -> f64 {
 /// The worst difference from the independent integrator at `points` points, in
 /// the stretch or in the rate times [`unit`].
 fn worst(
-    mut trajectory: Trajectory,
+    mut trajectory: Clocked<Steps>,
     actuator: &Actuator,
     load: &Load,
     step: f64,
@@ -71,7 +71,7 @@ fn actuators_of_all_aspects_and_elasticities_move_as_they_should() {
             for (trajectory, most) in [
                 (from_rest(1e-12), allowed::PERIODS),
                 (
-                    from_rest(1e-12).without_orbits(),
+                    from_rest(1e-12).with(Trajectory::without_orbits),
                     allowed::PERIODS_WITHOUT_ORBITS,
                 ),
             ] {

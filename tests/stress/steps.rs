@@ -1,5 +1,7 @@
 //! Communication steps of all sizes and numbers, late times, time reversal.
 
+use dielectric_elastomer_actuator::solver::double::Double;
+
 use super::*;
 
 /// Communication steps as powers of two, so that their sums are exact.
@@ -131,9 +133,9 @@ fn a_driven_motion_run_back_with_its_drive_returns_to_its_start() {
 /// Follows `forth` for `time` and `back` from there with the rate reversed.
 fn returns(orbits: bool, [forth, back]: [&Motion; 2], time: f64, what: &str) {
     let follow = |start: State, motion: &Motion| {
-        let mut trajectory = Trajectory::new(start, Double::ZERO, WIDE, 1e-12);
+        let mut trajectory = Clocked::from(Trajectory::new(start, WIDE, 1e-12));
         if !orbits {
-            trajectory = trajectory.without_orbits();
+            trajectory = trajectory.with(Trajectory::without_orbits);
         }
         advance(&mut trajectory, motion, time);
         let State { position, rate } = trajectory.state();
@@ -160,7 +162,7 @@ fn at_a_time_of_1e9_steps_of_1e_3_go_as_they_do_at_0() {
         let (late, mut early) = (alternating(0.3, 0.125), alternating(0.3, 0.125));
         early.harmonic[2] = sine.atan2(cosine);
         let [late_motion, early_motion] = [late, early].map(|load| motion(&actuator, &load));
-        let mut late = Trajectory::new(REST, Double::new(1e9), WIDE, 1e-12);
+        let mut late = Clocked::at(Double::new(1e9), Trajectory::new(REST, WIDE, 1e-12));
         let mut early = from_rest(1e-12);
         let mut worst = 0.0_f64;
         for _ in 0..count {

@@ -1,10 +1,10 @@
 //! Motions that a long substep could step over without noticing.
 
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double::Double;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 
+use crate::clocked::Clocked;
 use crate::independent::{Actuator, Load};
 use crate::{advance, alternating, assert_at_most, from_rest, motion};
 
@@ -60,7 +60,7 @@ fn a_fast_contraction_stops_at_the_lower_limit() {
                     lower: 0.4,
                     upper: 10.0,
                 };
-                let mut trajectory = Trajectory::new(start, Double::ZERO, limits, tolerance);
+                let mut trajectory = Clocked::from(Trajectory::new(start, limits, tolerance));
                 let outcome = trajectory.advance(&motion, step);
                 assert!(
                     matches!(outcome, Ok(Progress::Stopped { limit: Limit::Lower, after })
@@ -88,7 +88,7 @@ fn a_fast_contraction_bounces_off_the_elastic_barrier() {
                 position: 1.0,
                 rate: -rate,
             };
-            let mut trajectory = Trajectory::new(start, Double::ZERO, crate::WIDE, tolerance);
+            let mut trajectory = Clocked::from(Trajectory::new(start, crate::WIDE, tolerance));
             advance(&mut trajectory, &motion, 1.5 / rate);
             assert!(trajectory.rate() > 0.0, "c = {aspect:e}, {tolerance:e}");
         }

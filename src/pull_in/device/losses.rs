@@ -63,7 +63,7 @@ pub struct Search {
 impl Default for Search {
     fn default() -> Search {
         Search {
-            trajectory: Trajectory::new(REST, Double::ZERO, LIMITS, TOLERANCE),
+            trajectory: Trajectory::new(REST, LIMITS, TOLERANCE),
         }
     }
 }
@@ -207,13 +207,14 @@ fn excess_of(
         upper: if charges { LIMITS.upper } else { saddle },
         ..LIMITS
     };
-    trajectory.begin_anew(REST, Double::ZERO, limits, TOLERANCE);
+    let mut clock = Double::ZERO;
+    trajectory.begin_anew(REST, limits, TOLERANCE);
     trajectory.record_extremes_anew(!charges);
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
     let slowness = 1.0 + (device.damping.linear + 6.0 * device.damping.viscosity) / period;
     let look = 0.5 * period * slowness;
     for _ in 0..MOST_LOOKS {
-        match trajectory.advance(&motion, look) {
+        match trajectory.advance(&motion, &mut clock, look) {
             Ok(Progress::Whole) => {}
             Ok(Progress::Stopped {
                 limit: Event::Limit(Limit::Upper),
@@ -230,7 +231,7 @@ fn excess_of(
             rate: trajectory.rate(),
             internal: trajectory.internal(),
         };
-        let local = motion.at(trajectory.time(), &origin);
+        let local = motion.at(&clock, &origin);
         let stored = local.stored(0.0, &stage);
         let supplied = if charges {
             voltage * stage.internal[0]

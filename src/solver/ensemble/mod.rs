@@ -275,15 +275,16 @@ impl<E: Equation> Queue<'_, E> {
         }
         let step = rest / (looked_back + BLOCK as f64 * blocks);
         let share = (START_SHARE * self.tolerance).max(1e-14);
-        let mut alone = Trajectory::new(state, lane.time, limits, share)
+        let mut alone = Trajectory::new(state, limits, share)
             .with_level(self.level)
             .without_endpoint_steps()
             .recording_extremes();
+        let mut time = lane.time;
         for place in 0..ORDER {
-            if place > 0 && alone.advance(equation, step) != Ok(Progress::Whole) {
+            if place > 0 && alone.advance(equation, &mut time, step) != Ok(Progress::Whole) {
                 return self.go_alone(lane, state);
             }
-            let local = equation.seen_from(alone.time());
+            let local = equation.seen_from(&time);
             packed.f[BLOCK + place][index] = local.acceleration_from(alone.state());
         }
         if let Some(Extremes { lowest, highest }) = alone.extremes() {
@@ -294,7 +295,7 @@ impl<E: Equation> Queue<'_, E> {
             lane.first = step;
         }
         lane.blocks = blocks as u64;
-        lane.time = *alone.time();
+        lane.time = time;
         let State { position, rate } = alone.state();
         packed.position[index] = position;
         packed.rate[index] = rate;
@@ -372,11 +373,12 @@ impl<E: Equation> Queue<'_, E> {
             ..
         } = &self.motions[lane.motion];
         let mut extremes = lane.extremes;
-        let mut alone = Trajectory::new(state, lane.time, limits, self.tolerance)
+        let mut alone = Trajectory::new(state, limits, self.tolerance)
             .with_level(self.level)
             .recording_extremes();
         let before = lane.time.since(self.start);
-        let progress = alone.advance(equation, self.end.since(lane.time));
+        let mut time = lane.time;
+        let progress = alone.advance(equation, &mut time, self.end.since(lane.time));
         if let Some(Extremes { lowest, highest }) = alone.extremes() {
             extremes.include(lowest);
             extremes.include(highest);

@@ -1,5 +1,6 @@
-//! A motion that is followed forward in time, whatever its equation: the clock, the steps that are
-//! kept, what the motion does in them, and the loop that takes further steps.
+//! A motion that is followed forward in time, whatever its equation: the steps that are kept, what
+//! the motion does in them, and the loop that takes further steps. The clock is the caller's, who
+//! lends it to each advance.
 //!
 //! What depends on the kind of equation is a [`Method`]: how the next step is solved, and what is
 //! carried along beside position and rate.
@@ -149,9 +150,7 @@ pub struct Integrator<M: Method> {
     pub(super) level: Level,
     pub(super) control: StepControl,
     pub(super) limits: Limits,
-    /// Present time of the model: all steps summed up.
-    pub(super) time: Double,
-    /// Time of the model at the start; of no meaning where no step is kept.
+    /// Time at the start; of no meaning where no step is kept.
     pub(super) time_origin: Double,
     /// State at the origin of time, its position counted from the origin of the position.
     pub(super) start: State,
@@ -185,7 +184,6 @@ impl<M: Method> Integrator<M> {
         history: History<M::Origin>,
         method: M,
         start: State,
-        time: Double,
         limits: Limits,
         tolerance: f64,
     ) -> Self {
@@ -193,8 +191,7 @@ impl<M: Method> Integrator<M> {
             level: Level::new(),
             control: StepControl::new(tolerance),
             limits,
-            time,
-            time_origin: time,
+            time_origin: Double::ZERO,
             start,
             position_origin: M::Origin::ZERO,
             history,
@@ -216,26 +213,6 @@ impl<M: Method> Integrator<M> {
     pub fn with_level(mut self, level: Level) -> Self {
         self.level = level;
         self
-    }
-
-    /// The present time of the model.
-    #[must_use]
-    #[inline]
-    pub fn time(&self) -> &Double {
-        &self.time
-    }
-
-    /// Sets the clock, and moves nothing. Where the equation depends on time, a restart must
-    /// follow.
-    pub fn set_clock(&mut self, time: Double) {
-        self.time_origin = self.time_origin.add(time.sub(self.time));
-        self.time = time;
-    }
-
-    /// Lets time pass in which nothing moves.
-    #[inline]
-    pub fn wait(&mut self, time: Double) {
-        self.time = self.time.add(time);
     }
 
     pub(super) fn records_extremes(&self) -> bool {
@@ -275,32 +252,33 @@ impl<M: Method> Integrator<M> {
         self.mode = Mode::UNKNOWN;
     }
 
-    /// Follows the motion for the time `step` where it stays in its step and meets nothing; tells
-    /// whether it does.
+    /// Follows the motion for the time `step` from `clock` where it stays in its step and meets
+    /// nothing; tells whether it does.
     #[inline(always)]
-    pub(super) fn advance_inside_step(&mut self, step: f64) -> bool {
+    pub(super) fn advance_inside_step(&mut self, clock: &mut Double, step: f64) -> bool {
         self.advances = self.advances.saturating_add(1);
         if step < self.time_left {
             self.time_left -= step;
             self.now = self.now.plus(self.mode.direction() * step);
-            self.time = self.time.plus(step);
+            *clock = clock.plus(step);
             return true;
         }
         false
     }
 
-    /// Follows the motion for the time `step`, by steps from `further`: it takes one or more
-    /// toward the time that it is given, within the budget, and returns by how much it has moved
-    /// the origin of time, or the length of a step that was too short to go on.
+    /// Follows the motion for the time `step` from `clock`, by steps from `further`: it takes one
+    /// or more toward the time that it is given, within the budget, and returns by how much it has
+    /// moved the origin of time, or the length of a step that was too short to go on.
     ///
     /// Out of the way of the steps for which the present step suffices, with its large frame.
     #[inline(never)]
     pub(super) fn advance_by_steps(
         &mut self,
+        clock: &mut Double,
         step: f64,
         further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
     ) -> Result<Progress<M::Event>, Failure> {
-        let progress = self.take_steps(step, further);
+        let progress = self.take_steps(clock, step, further);
         let passed = match progress {
             Ok(Progress::Whole) => step,
             Ok(Progress::Stopped { after, .. })
@@ -308,18 +286,19 @@ impl<M: Method> Integrator<M> {
                 Failure::SubstepTooShort { after, .. } | Failure::TooManySubsteps { after, .. },
             ) => after,
         };
-        self.time = self.time.plus(passed).renormalized();
+        *clock = clock.plus(passed).renormalized();
         progress
     }
 
     #[inline(always)]
     fn take_steps(
         &mut self,
+        clock: &Double,
         step: f64,
         mut further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
     ) -> Result<Progress<M::Event>, Failure> {
         if self.history.is_empty() {
-            self.time_origin = self.time;
+            self.time_origin = *clock;
         }
         match self.mode {
             Mode::Dense { .. } => {}

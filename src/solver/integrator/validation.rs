@@ -24,7 +24,7 @@ impl<M: Method> Integrator<M> {
         let latest = self.latest_unseen();
         self.control.is_valid()
             && self.limits.are_valid()
-            && [self.time, self.time_origin].iter().all(Double::is_finite)
+            && self.time_origin.is_finite()
             && self.position_origin.is_finite()
             && self.start.position.is_finite()
             && self.start.rate.is_finite()

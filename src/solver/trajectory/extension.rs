@@ -46,16 +46,21 @@ impl Trajectory {
     }
 
     /// Makes the first step from the origin on in 4 nodes, if that is possible.
-    pub(super) fn takes_short_step<E: Equation>(&mut self, equation: &E, step: f64) -> bool {
+    pub(super) fn takes_short_step<E: Equation>(
+        &mut self,
+        equation: &E,
+        time: &Double,
+        step: f64,
+    ) -> bool {
         if self.method.trend.is_none() {
-            self.method.trend = Trend::first(equation, &self.time, self.start, step);
+            self.method.trend = Trend::first(equation, time, self.start, step);
         }
         let bounds = self.bounds();
         let Some(trend) = &mut self.method.trend else {
             return false;
         };
         let short = ShortStep {
-            time: &self.time,
+            time,
             length: step,
             bounds,
         };

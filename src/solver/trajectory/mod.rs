@@ -57,10 +57,10 @@ impl Method for Steps {
 pub type Trajectory = Integrator<Steps>;
 
 impl Trajectory {
-    /// A motion from `start` at `time`, followed with a relative `tolerance` of the position inside
-    /// the `limits`.
+    /// A motion from `start`, followed with a relative `tolerance` of the position inside the
+    /// `limits`.
     #[must_use]
-    pub fn new(start: State, time: Double, limits: Limits, tolerance: f64) -> Trajectory {
+    pub fn new(start: State, limits: Limits, tolerance: f64) -> Trajectory {
         let steps = Steps {
             follows_orbits: true,
             takes_endpoint_steps: true,
@@ -68,7 +68,7 @@ impl Trajectory {
             endpoint: EndpointSteps::NONE,
             single: SingleSteps::NONE,
         };
-        Trajectory::with_method(History::empty(), steps, start, time, limits, tolerance)
+        Trajectory::with_method(History::empty(), steps, start, limits, tolerance)
     }
 
     /// Integrates the motion all the way even where it repeats.
@@ -109,28 +109,34 @@ impl Trajectory {
         self.start_from_present();
     }
 
-    /// Follows the motion for the time `step` > 0. The `equation` must be the same as in the calls
+    /// Follows the motion for the time `step` > 0 from `clock`, the time to which it has come, and
+    /// moves the clock to where it has come then. The `equation` must be the same as in the calls
     /// before, back to the last [`Trajectory::restart`].
     ///
     /// # Errors
     /// [`Failure`] where the integration cannot go on; the trajectory then stands at the end of the
     /// last step.
-    pub fn advance<E: Equation>(&mut self, equation: &E, step: f64) -> Result<Progress, Failure> {
-        if self.advance_inside_step(step) {
+    pub fn advance<E: Equation>(
+        &mut self,
+        equation: &E,
+        clock: &mut Double,
+        step: f64,
+    ) -> Result<Progress, Failure> {
+        if self.advance_inside_step(clock, step) {
             return Ok(Progress::Whole);
         }
         let first = self.restarts_at_every_step && self.advances == 1;
         if first && self.method.takes_endpoint_steps {
             // First, since all that the next step does with the time waits for it.
-            let time = self.time.plus(step).renormalized();
-            if self.takes_short_step(equation, step) {
-                self.time = time;
+            let end = clock.plus(step).renormalized();
+            if self.takes_short_step(equation, clock, step) {
+                *clock = end;
                 return Ok(Progress::Whole);
             }
         }
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
-        self.advance_by_steps(step, |motion, target, budget| {
+        self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
             let kind = match unobstructed {
                 true => motion.next_kind(equation, rest),

@@ -2,23 +2,25 @@
 
 use super::{Failure, Progress, Trajectory};
 use crate::solver::Equation;
+use crate::solver::double::Double;
 use crate::solver::segment::Segment;
 
 impl Trajectory {
-    /// Follows the motion over one substep of 16 nodes, no longer than `most`, and
-    /// returns it. Where it meets a limit the trajectory stands there, and the substep goes beyond.
+    /// Follows the motion over one substep of 16 nodes from `clock`, no longer than `most`, and
+    /// returns it; the clock moves with it. Where it meets a limit the trajectory stands there, and
+    /// the substep goes beyond.
     ///
     /// # Errors
     /// [`Failure::SubstepTooShort`] where the integration cannot go on.
     pub fn advance_by_substep<E: Equation>(
         &mut self,
         equation: &E,
+        clock: &mut Double,
         most: f64,
     ) -> Result<(Segment, Progress), Failure> {
         let state = self.state();
-        let time = self.time;
-        self.stand_at(time, state);
-        let local = equation.seen_from(&time);
+        self.stand_at(*clock, state);
+        let local = equation.seen_from(clock);
         let substep = self
             .step(&local, state, true, most)
             .map_err(|length| Failure::SubstepTooShort { length, after: 0.0 })?;
@@ -33,9 +35,8 @@ impl Trajectory {
                 segment.state(after),
             ),
         };
-        self.time = time.plus(passed).renormalized();
-        let time = self.time;
-        self.stand_at(time, end);
+        *clock = clock.plus(passed).renormalized();
+        self.stand_at(*clock, end);
         Ok((segment, progress))
     }
 }

@@ -44,23 +44,22 @@ pub struct Carried {
 pub type Trajectory = Integrator<Carried>;
 
 impl Trajectory {
-    /// A motion from `start` at `time`, followed with a relative `tolerance` of every state
+    /// A motion from `start`, followed with a relative `tolerance` of every state
     /// between the `limits` of the position. The position is counted from 0.
     #[must_use]
-    pub fn new(start: FullState, time: Double, limits: Limits, tolerance: f64) -> Trajectory {
-        Trajectory::within(History::empty(), start, time, limits, tolerance)
+    pub fn new(start: FullState, limits: Limits, tolerance: f64) -> Trajectory {
+        Trajectory::within(History::empty(), start, limits, tolerance)
     }
 
     /// Makes it a new motion, see [`Trajectory::new`], in the memory of the one that it was.
-    pub fn begin_anew(&mut self, start: FullState, time: Double, limits: Limits, tolerance: f64) {
+    pub fn begin_anew(&mut self, start: FullState, limits: Limits, tolerance: f64) {
         let history = self.history.take();
-        *self = Trajectory::within(history, start, time, limits, tolerance);
+        *self = Trajectory::within(history, start, limits, tolerance);
     }
 
     fn within(
         history: History<Double>,
         start: FullState,
-        time: Double,
         limits: Limits,
         tolerance: f64,
     ) -> Trajectory {
@@ -71,7 +70,7 @@ impl Trajectory {
             slopes_before: None,
             awaits_margin: true,
         };
-        Trajectory::with_method(history, carried, start.motion, time, limits, tolerance)
+        Trajectory::with_method(history, carried, start.motion, limits, tolerance)
     }
 
     /// Goes on without awaiting the margin of the equation any more.
@@ -112,7 +111,8 @@ impl Trajectory {
         }
     }
 
-    /// Follows the motion for the time `step` > 0. The `equation` must be the same as in the calls
+    /// Follows the motion for the time `step` > 0 from `clock`, the time to which it has come, and
+    /// moves the clock to where it has come then. The `equation` must be the same as in the calls
     /// before, back to the last [`Trajectory::restart`].
     ///
     /// # Errors
@@ -121,12 +121,13 @@ impl Trajectory {
     pub fn advance<E: CoupledEquation>(
         &mut self,
         equation: &E,
+        clock: &mut Double,
         step: f64,
     ) -> Result<Progress, Failure> {
-        if self.advance_inside_step(step) {
+        if self.advance_inside_step(clock, step) {
             return Ok(Progress::Whole);
         }
-        self.advance_by_steps(step, |motion, target, budget| {
+        self.advance_by_steps(clock, step, |motion, target, budget| {
             *budget -= 1;
             motion.extend(equation, target.since(motion.history.end()))
         })
