@@ -226,9 +226,10 @@ documentation-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Rust tests in the documentation)
 	@$(PYTEST) tests/documentation $(JUNIT)
 
+# Four at once, also on two cores: the tests of what a sweep loses wait most of the time.
 fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,FMPy tests)
-	@$(PYTEST) tests/fmpy $(JUNIT)
+	@$(PYTEST) tests/fmpy --numprocesses 4 --dist worksteal $(JUNIT)
 
 python-types: $(PACKAGE_INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Types of the Python code)
