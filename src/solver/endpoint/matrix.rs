@@ -7,50 +7,77 @@
 
 use fearless_simd::{Simd, SimdBase, f64x4};
 
-use super::plan::{NODES, pair, scaled, unpair};
+use super::plan::{NODES, Pair, pair, scaled, unpair};
 use super::table::Diagonals;
 use crate::solver::number::Number;
 
 /// A matrix by rows.
 pub type Matrix = [[f64; NODES]; NODES];
 
-/// (1 − z·matrix)⁻¹ by Gauss and Jordan; no pivoting is needed for z ≤ 0.
+/// (1 − z·matrix)⁻¹·matrix by Gauss and Jordan; no pivoting is needed for z ≤ 0.
 #[inline(always)]
-pub fn inverse_of_one_less<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
-    let mut rows = *matrix;
+pub fn quotient<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
+    let [mut left, mut right] = [*matrix; 2];
     for i in 0..NODES {
-        rows[i] = unpair(scaled(pair(simd, &rows[i]), -z));
-        rows[i][i] += 1.0;
+        left[i] = unpair(scaled(pair(simd, &left[i]), -z));
+        left[i][i] += 1.0;
     }
     for p in 0..NODES {
-        let pivot = 1.0 / rows[p][p];
-        rows[p][p] = 1.0;
-        let own = scaled(pair(simd, &rows[p]), pivot);
-        rows[p] = unpair(own);
+        let pivot = 1.0 / left[p][p];
+        let own = [
+            scaled(pair(simd, &left[p]), pivot),
+            scaled(pair(simd, &right[p]), pivot),
+        ];
+        [left[p], right[p]] = [unpair(own[0]), unpair(own[1])];
         for r in 0..NODES {
             if r != p {
-                let factor = f64x4::splat(simd, -rows[r][p]);
-                rows[r][p] = 0.0;
-                let [left, right] = pair(simd, &rows[r]);
-                rows[r] = unpair([own[0].mul_add(factor, left), own[1].mul_add(factor, right)]);
+                let factor = f64x4::splat(simd, -left[r][p]);
+                left[r] = unpair(added(pair(simd, &left[r]), factor, own[0]));
+                right[r] = unpair(added(pair(simd, &right[r]), factor, own[1]));
             }
         }
+    }
+    right
+}
+
+/// row + factor · other.
+#[inline(always)]
+fn added<S: Simd>(row: Pair<S>, factor: f64x4<S>, other: Pair<S>) -> Pair<S> {
+    [
+        other[0].mul_add(factor, row[0]),
+        other[1].mul_add(factor, row[1]),
+    ]
+}
+
+/// matrix + factor · left · right.
+#[inline(always)]
+pub fn sum<S: Simd>(
+    simd: S,
+    matrix: &Matrix,
+    factor: f64,
+    left: &Matrix,
+    right: &Matrix,
+) -> Matrix {
+    let mut rows = *matrix;
+    for i in 0..NODES {
+        let mut row = pair(simd, &rows[i]);
+        for k in 0..NODES {
+            let factor = f64x4::splat(simd, factor * left[i][k]);
+            row = added(row, factor, pair(simd, &right[k]));
+        }
+        rows[i] = unpair(row);
     }
     rows
 }
 
-/// left · right.
+/// The matrix by rows.
 #[inline(always)]
-pub fn product<S: Simd>(simd: S, left: &Matrix, right: &Matrix) -> Matrix {
+pub fn rows(diagonals: &Diagonals) -> Matrix {
     let mut rows = [[0.0; NODES]; NODES];
     for i in 0..NODES {
-        let mut row = [f64x4::splat(simd, 0.0); 2];
-        for k in 0..NODES {
-            let factor = f64x4::splat(simd, left[i][k]);
-            let [low, high] = pair(simd, &right[k]);
-            row = [low.mul_add(factor, row[0]), high.mul_add(factor, row[1])];
+        for j in 0..NODES {
+            rows[i][j] = diagonals[i ^ j][i / 4][i % 4];
         }
-        rows[i] = unpair(row);
     }
     rows
 }

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 
 use super::double::Double;
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
-use super::number::Number;
 use super::step_control::{HALVED, SHORTEST, StepControl, factor, shortened};
 use super::{Equation, LocalEquation, State};
 
+mod before;
 mod matrix;
 mod plan;
 mod single;
@@ -24,7 +24,8 @@ mod stages;
 mod table;
 mod way;
 
-use plan::{NODES, Pair, Plan, largest, pair, shifted, sine_and_cosine, unpair};
+use before::{Before, STEEPEST};
+use plan::{NODES, Plan, largest, pair, shifted, sine_and_cosine, unpair};
 pub use single::SingleSteps;
 use stages::{AVERAGED, Stages, averaged, solve, stays_between};
 pub use way::{End, Way};
@@ -53,11 +54,11 @@ const TOO_SHORT: f64 = 1.25;
 /// Steps after which the load and its phase are taken anew from the time.
 const RENEWED: f64 = 16.0;
 
+/// Steps whose sum is off by less than this part of one are those of the last plan.
+const SAME: f64 = 1e-9;
+
 /// A slope that is off by this, times the square of half the length, is replaced.
 const SLOPE_OFF: f64 = 0.04;
-
-/// The slope of a plan is bounded so that its matrices are well conditioned.
-const STEEPEST: f64 = 2.0;
 
 /// Fewer steps do not pay for the matrices of a slope, unless they come again.
 const FEW: f64 = 3.0;
@@ -83,18 +84,6 @@ pub struct EndpointSteps {
     states: f64,
     #[serde(skip)]
     plan: Plan,
-}
-
-/// The last step.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Before {
-    half: f64,
-    slope: f64,
-    /// By how much the position has moved.
-    moved: f64,
-    /// g of its plan, and the displacement since its begin, at the nodes.
-    g: [f64; NODES],
-    displacement: [f64; NODES],
 }
 
 /// The worst of the steps since the length was looked at: its error as a part of what is allowed,
@@ -171,15 +160,7 @@ impl EndpointSteps {
             error,
             contraction,
         } = self.seen;
-        let before = self.before.is_none_or(|before| {
-            let numbers = before.g.iter().chain(&before.displacement);
-            positive(before.half)
-                && (-STEEPEST..=0.0).contains(&(before.half * before.half * before.slope))
-                && numbers
-                    .chain([&before.moved])
-                    .all(|number| number.is_finite())
-        });
-        before
+        self.before.is_none_or(|before| before.is_valid())
             && self.length.is_none_or(positive)
             && (LEAST_ITERATIONS..=MOST_ITERATIONS).contains(&self.iterations)
             && [error, contraction].iter().all(|worst| *worst >= 0.0)
@@ -231,17 +212,24 @@ impl EndpointSteps {
         let longest = 0.5 * local.longest_substep();
         let free = wanted.min(longest);
         let count = (rest / free - 1e-9).ceil().max(1.0);
-        let length = rest / count;
+        let mut length = rest / count;
+        // The host's times are rounded: steps that only differ by that share a plan.
+        if let Some(before) = &self.before
+            && (rest - 2.0 * before.half * count).abs() < SAME * length
+        {
+            length = 2.0 * before.half;
+        }
         let shortest = SHORTEST * rest.min(time_scale);
         if length.is_nan() || length <= shortest || longest < FAST * time_scale {
             return Some(End::Blocked);
         }
         let half = 0.5 * length;
-        let slope = self.slope(&local, way.state, half, count);
+        let product = self.product(simd, &local, way.state, half, count);
         let [frequency, angle] = local.harmonic().unwrap_or_default();
         let alternates = frequency != 0.0;
-        self.plan.prepare(simd, half, slope, frequency);
+        self.plan.prepare(simd, half, product, frequency);
         let plan = &self.plan;
+        let slope = plan.slope;
         let mut phase = match alternates {
             true => sine_and_cosine(simd, angle),
             false => [0.0; 2],
@@ -357,7 +345,9 @@ impl EndpointSteps {
                 way.now = way.now.add(Double::new(length).scale(taken));
                 taken = 0.0;
                 local = equation.at(&way.time());
-                (self.slope, self.states) = averaged(&local, state, self.slope, self.states);
+                let positions = shifted(displacement, state.position - moved);
+                (self.slope, self.states) =
+                    averaged(simd, &local, state.rate, positions, self.slope, self.states);
                 if let Some([_, angle]) = local.harmonic() {
                     phase = sine_and_cosine(simd, angle);
                 }
@@ -370,7 +360,7 @@ impl EndpointSteps {
         if let Some((g, displacement, moved)) = last {
             self.before = Some(Before {
                 half,
-                slope,
+                product,
                 moved,
                 g: unpair(g),
                 displacement: unpair(displacement),
@@ -387,39 +377,34 @@ impl EndpointSteps {
         end
     }
 
-    /// The slope of the plan of `count` steps from here.
+    /// half²·J of the plan of `count` steps from here.
     #[inline(always)]
-    fn slope<L: LocalEquation>(&mut self, local: &L, state: State, half: f64, count: f64) -> f64 {
-        let square = half * half;
-        let kept = self.before.filter(|before| before.half == half);
-        if self.states == 0.0 || kept.is_none() {
-            (self.slope, self.states) = averaged(local, state, self.slope, self.states);
+    fn product<S: Simd, L: LocalEquation>(
+        &mut self,
+        simd: S,
+        local: &L,
+        state: State,
+        half: f64,
+        count: f64,
+    ) -> f64 {
+        let of_this_length = self.before.is_some_and(|before| before.half == half);
+        if self.states == 0.0 || !of_this_length {
+            let positions = match &self.before {
+                Some(before) => shifted(
+                    pair(simd, &before.displacement),
+                    state.position - before.moved,
+                ),
+                None => [f64x4::splat(simd, state.position); 2],
+            };
+            (self.slope, self.states) =
+                averaged(simd, local, state.rate, positions, self.slope, self.states);
         }
-        match kept {
-            Some(before) if square * (before.slope - self.slope).abs() < SLOPE_OFF => before.slope,
-            None if count < FEW => 0.0,
-            _ => self.slope.max(-STEEPEST / square).min(0.0),
+        let wanted = (half * half * self.slope).clamp(-STEEPEST, 0.0);
+        match self.before {
+            // Matrices that are there serve another length too, with a slope that fits it.
+            Some(before) if (before.product - wanted).abs() < SLOPE_OFF => before.product,
+            _ if wanted > -SLOPE_OFF || !of_this_length && count < FEW => 0.0,
+            _ => wanted,
         }
-    }
-}
-
-impl Before {
-    /// g of the step after, on its plan.
-    #[inline(always)]
-    fn continued<S: Simd>(&self, simd: S, plan: &Plan) -> Pair<S> {
-        let change = f64x4::splat(simd, self.slope - plan.slope);
-        let [low, high] = pair(simd, &self.g);
-        let displacement = pair(simd, &self.displacement);
-        let g = [
-            displacement[0].mul_add(change, low),
-            displacement[1].mul_add(change, high),
-        ];
-        if self.half == plan.half {
-            return plan.ahead(simd, g, self.moved);
-        }
-        shifted(
-            plan.resampled(simd, &unpair(g), self.half),
-            plan.slope * self.moved,
-        )
     }
 }

@@ -17,8 +17,8 @@
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
-use super::matrix::{diagonals, inverse_of_one_less, product};
-use super::table::{Diagonals, TABLE};
+use super::matrix::{diagonals, quotient, rows, sum};
+use super::table::{Dense, Diagonals, Matrices, TABLE};
 use crate::solver::collocation::clenshaw;
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
@@ -36,6 +36,11 @@ pub struct Plan {
     pub half: f64,
     /// J.
     pub slope: f64,
+    /// half²·J, and the matrices of steps with this product whose half is 1.
+    product: f64,
+    unscaled: Matrices,
+    /// Those of these steps.
+    matrices: Matrices,
     /// The angular frequency with which the load alternates.
     frequency: f64,
     /// The time of the nodes since the begin of the step.
@@ -43,17 +48,6 @@ pub struct Plan {
     /// Sine and cosine of the angle by which the load turns until then, and until the end.
     turn: [[f64; NODES]; 2],
     turn_end: [f64; 2],
-    /// The displacement x − x_0 from x'_0.
-    drift: [f64; NODES],
-    /// x' from x'_0.
-    gain: [f64; NODES],
-    /// half²·W·A and half·(Â·W), where Â integrates once.
-    twice: Diagonals,
-    once: Diagonals,
-    /// From each value of g, and from x'_0: displacement and change of x' at the end, and half²
-    /// times the last two Legendre coefficients of f.
-    end: [[f64; 4]; NODES],
-    end_drift: [f64; 4],
 }
 
 #[inline(always)]
@@ -131,104 +125,66 @@ impl Plan {
     pub const NONE: Plan = Plan {
         half: 0.0,
         slope: 0.0,
+        product: 0.0,
+        unscaled: Matrices::NONE,
+        matrices: Matrices::NONE,
         frequency: 0.0,
         offset: [0.0; NODES],
         turn: [[0.0; NODES]; 2],
         turn_end: [0.0; 2],
-        drift: [0.0; NODES],
-        gain: [0.0; NODES],
-        twice: [[[0.0; 4]; 2]; NODES],
-        once: [[[0.0; 4]; 2]; NODES],
-        end: [[0.0; 4]; NODES],
-        end_drift: [0.0; 4],
     };
 
-    /// Makes it the plan of steps of this length under this load.
+    /// Makes it the plan of steps of this length and half²·J under this load.
     #[inline(always)]
-    pub fn prepare<S: Simd>(&mut self, simd: S, half: f64, slope: f64, frequency: f64) {
+    pub fn prepare<S: Simd>(&mut self, simd: S, half: f64, product: f64, frequency: f64) {
+        let slope = product / (half * half);
         if (half, slope) != (self.half, self.slope) {
-            self.half = half;
+            if product != 0.0 && product != self.product {
+                self.product = product;
+                self.unscaled = with_slope(simd.level(), product);
+            }
             self.slope = slope;
-            self.solve();
-        } else if frequency == self.frequency {
+            self.scale(simd, half, product != 0.0);
+        }
+        if (half, frequency) == (self.half, self.frequency) {
             return;
         }
+        self.half = half;
         self.frequency = frequency;
         let quarter = f64x4::splat(simd, std::f64::consts::FRAC_PI_2);
-        let offset = pair(simd, &self.offset);
+        let offset = scaled(pair(simd, &TABLE.place), half);
         let mut turn = [offset; 2];
         for k in 0..2 {
             let angle = offset[k] * frequency;
             turn[0][k] = angle.sin();
             turn[1][k] = (angle + quarter).sin();
         }
+        self.offset = unpair(offset);
         self.turn = [unpair(turn[0]), unpair(turn[1])];
         self.turn_end = sine_and_cosine(simd, 2.0 * half * frequency);
     }
 
-    /// Works out the matrices, with the instructions of every processor: that is rare, and so one
-    /// copy of the code serves all levels.
-    #[inline(never)]
-    fn solve(&mut self) {
-        dispatch!(Level::baseline(), simd => self.solve_with(simd));
-    }
-
+    /// The matrices of steps of this length from those of steps whose half is 1.
     #[inline(always)]
-    fn solve_with<S: Simd>(&mut self, simd: S) {
-        let Plan { half, slope, .. } = *self;
+    fn scale<S: Simd>(&mut self, simd: S, half: f64, slopes: bool) {
+        let from = if slopes { &self.unscaled } else { &TABLE.plain };
         let square = half * half;
-        let table = &TABLE;
-        let splat = |value: f64| f64x4::splat(simd, value);
-        let place = pair(simd, &table.place);
-        let z = square * slope;
-        self.offset = unpair(scaled(place, half));
-        self.drift = self.offset;
-        self.gain = [1.0; NODES];
-        self.end = table.end;
-        self.end_drift = [2.0 * half, 0.0, 0.0, 0.0];
-        let scale = load(simd, &[square, half, square, square]);
-        let mut twice = table.twice;
-        let mut once = table.once;
-        if z != 0.0 {
-            let inverse = inverse_of_one_less(simd, z, &table.twice);
-            twice = product(simd, &inverse, &table.twice);
-            once = product(simd, &table.once, &inverse);
-            let mut drift = [0.0; NODES];
-            let mut gain = [0.0; NODES];
-            for i in 0..NODES {
-                for k in 0..NODES {
-                    drift[i] += inverse[i][k] * table.place[k];
-                    gain[i] += once[i][k] * table.place[k];
-                }
-                gain[i] = 1.0 + z * gain[i];
-            }
-            self.drift = unpair(scaled(pair(simd, &drift), half));
-            self.gain = gain;
-            let mut end_drift = splat(0.0);
-            for j in 0..NODES {
-                let mut column = splat(0.0);
-                for k in 0..NODES {
-                    column = load(simd, &table.end[k]).mul_add(splat(inverse[k][j]), column);
-                }
-                column.store_slice(&mut self.end[j]);
-                end_drift = load(simd, &table.end[j]).mul_add(splat(drift[j]), end_drift);
-            }
-            let ends = (end_drift * (half * slope)).mul_add(scale, load(simd, &self.end_drift));
-            ends.store_slice(&mut self.end_drift);
-        }
-        for j in 0..NODES {
-            (load(simd, &self.end[j]) * scale).store_slice(&mut self.end[j]);
-        }
-        self.twice = diagonals(&twice);
-        self.once = diagonals(&once);
+        let to = &mut self.matrices;
         for x in 0..NODES {
             for register in 0..2 {
-                let twice = &mut self.twice[x][register];
-                (load(simd, twice) * square).store_slice(twice);
-                let once = &mut self.once[x][register];
-                (load(simd, once) * half).store_slice(once);
+                (load(simd, &from.twice[x][register]) * square)
+                    .store_slice(&mut to.twice[x][register]);
+                (load(simd, &from.once[x][register]) * half).store_slice(&mut to.once[x][register]);
             }
         }
+        let by_values = load(simd, &[square, half, square, square]);
+        for j in 0..NODES {
+            (load(simd, &from.end[j]) * by_values).store_slice(&mut to.end[j]);
+        }
+        let by_rate = load(simd, &[half, 1.0, half, half]);
+        (load(simd, &from.end_drift) * by_rate).store_slice(&mut to.end_drift);
+        to.drift = unpair(scaled(pair(simd, &from.drift), half));
+        to.gain = from.gain;
     }
 
     /// The sine of the load at the nodes, where it has this phase at the begin.
@@ -294,8 +250,8 @@ impl Plan {
     #[inline(always)]
     pub fn free<S: Simd>(&self, simd: S, rate: f64) -> [Pair<S>; 2] {
         [
-            scaled(pair(simd, &self.drift), rate),
-            scaled(pair(simd, &self.gain), rate),
+            scaled(pair(simd, &self.matrices.drift), rate),
+            scaled(pair(simd, &self.matrices.gain), rate),
         ]
     }
 
@@ -309,8 +265,8 @@ impl Plan {
     ) -> [Pair<S>; 2] {
         let values = both_permuted(g);
         [
-            multiply(simd, &self.twice, &values, drift),
-            multiply(simd, &self.once, &values, gain),
+            multiply(simd, &self.matrices.twice, &values, drift),
+            multiply(simd, &self.matrices.once, &values, gain),
         ]
     }
 
@@ -319,20 +275,61 @@ impl Plan {
     #[inline(always)]
     pub fn end<S: Simd>(&self, simd: S, g: Pair<S>, rate: f64) -> [f64; 4] {
         let g = unpair(g);
-        let mut even = load(simd, &self.end_drift) * rate;
-        let mut odd = load(simd, &self.end[1]) * g[1];
+        let Matrices { end, end_drift, .. } = &self.matrices;
+        let mut even = load(simd, end_drift) * rate;
+        let mut odd = load(simd, &end[1]) * g[1];
         for j in 0..NODES / 2 {
             let value = f64x4::splat(simd, g[2 * j]);
-            even = load(simd, &self.end[2 * j]).mul_add(value, even);
+            even = load(simd, &end[2 * j]).mul_add(value, even);
             if j > 0 {
                 let value = f64x4::splat(simd, g[2 * j + 1]);
-                odd = load(simd, &self.end[2 * j + 1]).mul_add(value, odd);
+                odd = load(simd, &end[2 * j + 1]).mul_add(value, odd);
             }
         }
         let mut ends = [0.0; 4];
         (even + odd).store_slice(&mut ends);
         ends
     }
+}
+
+/// The matrices of steps whose half is 1 with this slope.
+#[inline(never)]
+fn with_slope(level: Level, slope: f64) -> Matrices {
+    dispatch!(level, simd => with_slope_by(simd, slope))
+}
+
+#[inline(always)]
+fn with_slope_by<S: Simd>(simd: S, slope: f64) -> Matrices {
+    let Dense { place, plain, .. } = &TABLE;
+    let twice = rows(&plain.twice);
+    // W·A, of which W is 1 + J·W·A.
+    let twice = quotient(simd, slope, &twice);
+    let once = rows(&plain.once);
+    let once = sum(simd, &once, slope, &once, &twice);
+    let mut matrices = Matrices {
+        twice: diagonals(&twice),
+        once: diagonals(&once),
+        ..*plain
+    };
+    for i in 0..NODES {
+        for k in 0..NODES {
+            matrices.drift[i] += slope * twice[i][k] * place[k];
+            matrices.gain[i] += slope * once[i][k] * place[k];
+        }
+    }
+    let mut end_drift = load(simd, &plain.end_drift);
+    for j in 0..NODES {
+        let mut column = load(simd, &plain.end[j]);
+        for k in 0..NODES {
+            column =
+                load(simd, &plain.end[k]).mul_add(f64x4::splat(simd, slope * twice[k][j]), column);
+        }
+        column.store_slice(&mut matrices.end[j]);
+        let factor = f64x4::splat(simd, slope * matrices.drift[j]);
+        end_drift = load(simd, &plain.end[j]).mul_add(factor, end_drift);
+    }
+    end_drift.store_slice(&mut matrices.end_drift);
+    matrices
 }
 
 /// factor · values.
@@ -377,21 +374,24 @@ mod tests {
         for slope in [0.0, -0.4, -2.0] {
             let mut plan = Plan::NONE;
             let ([x, v], end) = dispatch!(Level::new(), simd => {
-                plan.prepare(simd, half, slope, 0.0);
+                plan.prepare(simd, half, half * half * slope, 0.0);
                 let g = pair(simd, &g);
                 let [x, v] = plan.stages(simd, g, plan.free(simd, rate));
                 ([unpair(x), unpair(v)], plan.end(simd, g, rate))
             });
             let f: [f64; NODES] = std::array::from_fn(|j| slope * x[j] + g[j]);
-            let apply = |row: &[f64; NODES]| -> f64 { row.iter().zip(f).map(|(a, f)| a * f).sum() };
+            let plain = &TABLE.plain;
+            let apply = |matrix: &Diagonals, i: usize| -> f64 {
+                (0..NODES).map(|x| matrix[x][i / 4][i % 4] * f[i ^ x]).sum()
+            };
             for i in 0..NODES {
                 let free = half * TABLE.place[i] * rate;
-                let position = free + half * half * apply(&TABLE.twice[i]);
+                let position = free + half * half * apply(&plain.twice, i);
                 assert!((x[i] - position).abs() < 4e-16, "J = {slope}: {position}");
-                let speed = rate + half * apply(&TABLE.once[i]);
+                let speed = rate + half * apply(&plain.once, i);
                 assert!((v[i] - speed).abs() < 4e-16, "J = {slope}: {speed}");
             }
-            let column = |row: usize| -> f64 { (0..NODES).map(|j| TABLE.end[j][row] * f[j]).sum() };
+            let column = |row: usize| -> f64 { (0..NODES).map(|j| plain.end[j][row] * f[j]).sum() };
             let moved = 2.0 * half * rate + half * half * column(0);
             assert!((end[0] - moved).abs() < 8e-16, "J = {slope}: {moved}");
             assert!((end[1] - half * column(1)).abs() < 8e-16, "J = {slope}");

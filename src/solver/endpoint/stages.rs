@@ -4,7 +4,6 @@ use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{Pair, Plan, largest};
 use crate::solver::iteration::{Diverged, IterationTolerance};
-use crate::solver::jet::Dual;
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
 use crate::solver::{LocalEquation, State};
@@ -98,17 +97,33 @@ pub fn stays_between<S: Simd>(
     position + down - beyond > lowest && position + up + beyond < highest
 }
 
-/// ∂f/∂x over the last states, this one too, and over how many.
-#[inline(never)]
-pub fn averaged<L: LocalEquation>(local: &L, state: State, mean: f64, states: f64) -> (f64, f64) {
-    let load = local.load(Dual::constant(0.0));
-    let position = Dual::new(state.position, 1.0);
-    let slope = local
-        .acceleration(load, position, Dual::constant(state.rate))
-        .slope();
+/// ∂f/∂x over the last states, these positions too, and over how many.
+#[inline(always)]
+pub fn averaged<S: Simd, L: LocalEquation>(
+    simd: S,
+    local: &L,
+    rate: f64,
+    positions: Pair<S>,
+    mean: f64,
+    states: f64,
+) -> (f64, f64) {
+    let [low, high] = positions;
+    let slope = slope(simd, local, rate, low) + slope(simd, local, rate, high);
+    let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
     let states = (states + 1.0).min(AVERAGED);
     let next = mean + (slope - mean) / states;
     // The first one counts alone.
     let next = if states == 1.0 { slope } else { next };
     (if next.is_finite() { next } else { 0.0 }, states)
+}
+
+/// ∂f/∂x at the begin, as if it were at these positions; its last digits do not matter.
+#[inline(always)]
+fn slope<S: Simd, L: LocalEquation>(simd: S, local: &L, rate: f64, position: f64x4<S>) -> f64x4<S> {
+    let load = local.load(f64x4::splat(simd, 0.0));
+    let rate = f64x4::splat(simd, rate);
+    let shift = position * f64x4::splat(simd, 1e-4);
+    let above = local.acceleration(load, position + shift, rate);
+    let below = local.acceleration(load, position - shift, rate);
+    (above - below) / (shift + shift)
 }

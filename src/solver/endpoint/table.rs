@@ -11,20 +11,42 @@ pub type Eight = [[f64; 4]; 2];
 /// value of node i ^ x. Registers are permuted for that, not stored and spread.
 pub type Diagonals = [Eight; 8];
 
+/// What leads from g at the nodes, and from the rate at the begin, to the motion over a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Matrices {
+    /// The displacement x − x_0 at the nodes, from g and from x'_0.
+    pub twice: Diagonals,
+    pub drift: [f64; 8],
+    /// x' at the nodes, from g and from x'_0.
+    pub once: Diagonals,
+    pub gain: [f64; 8],
+    /// From each value of g, and from x'_0: displacement and change of x' at the end, and half²
+    /// times the last two Legendre coefficients of f.
+    pub end: [[f64; 4]; 8],
+    pub end_drift: [f64; 4],
+}
+
+impl Matrices {
+    /// None: all numbers are 0.
+    pub const NONE: Matrices = Matrices {
+        twice: [[[0.0; 4]; 2]; 8],
+        drift: [0.0; 8],
+        once: [[[0.0; 4]; 2]; 8],
+        gain: [0.0; 8],
+        end: [[0.0; 4]; 8],
+        end_drift: [0.0; 4],
+    };
+}
+
 /// What is needed of the nodes: u_0 to u_3 increasing, then −u_0 to −u_3.
 #[derive(Debug)]
 pub struct Dense {
     /// 1 + u_i.
     pub place: [f64; 8],
-    /// The once integrated f, by rows.
-    pub once: [[f64; 8]; 8],
-    /// The twice integrated f, by rows.
-    pub twice: [[f64; 8]; 8],
+    /// The matrices of a step of half the length 1 with the slope 0.
+    pub plain: Matrices,
     /// The polynomial through the values at the nodes, one step of the same length later.
     pub ahead: Diagonals,
-    /// For the value at each node: the twice and the once integrated f at the end, and the last two
-    /// Legendre coefficients.
-    pub end: [[f64; 4]; 8],
     /// For the value at each node: all Legendre coefficients.
     pub series: [[f64; 8]; 8],
 }
@@ -37,10 +59,12 @@ impl Dense {
         const N: usize = 8;
         let mut dense = Dense {
             place: [0.0; N],
-            once: [[0.0; N]; N],
-            twice: [[0.0; N]; N],
+            plain: Matrices {
+                gain: [1.0; N],
+                end_drift: [2.0, 0.0, 0.0, 0.0],
+                ..Matrices::NONE
+            },
             ahead: [[[0.0; 4]; 2]; N],
-            end: [[0.0; 4]; N],
             series: [[0.0; N]; N],
         };
         let mut node = [Double::ZERO; N];
@@ -62,8 +86,9 @@ impl Dense {
                 k += 1;
             }
             dense.place[j] = Double::ONE.add(node[j]).value();
+            dense.plain.drift[j] = dense.place[j];
             let tilt = share[1].div(Double::new(3.0));
-            dense.end[j] = [
+            dense.plain.end[j] = [
                 share[0].sub(tilt).scale(2.0).value(),
                 share[0].scale(2.0).value(),
                 share[N - 2].value(),
@@ -86,8 +111,8 @@ impl Dense {
                     ahead = ahead.add(share[k].mul(next[k]));
                     k += 1;
                 }
-                dense.once[i][j] = once.value();
-                dense.twice[i][j] = twice.value();
+                dense.plain.once[i ^ j][i / 4][i % 4] = once.value();
+                dense.plain.twice[i ^ j][i / 4][i % 4] = twice.value();
                 dense.ahead[i ^ j][i / 4][i % 4] = ahead.value();
                 i += 1;
             }
@@ -107,23 +132,28 @@ mod tests {
         for n in 0..8_i32 {
             let node = TABLE.place.map(|place| place - 1.0);
             let values = node.map(|u| u.powi(n));
-            let apply =
-                |row: &[f64; 8]| -> f64 { row.iter().zip(values).map(|(a, b)| a * b).sum() };
+            let apply = |matrix: &Diagonals, i: usize| -> f64 {
+                (0..8)
+                    .map(|x| matrix[x][i / 4][i % 4] * values[i ^ x])
+                    .sum()
+            };
             let begin = (-1.0_f64).powi(n + 1);
             let [order, next] = [f64::from(n + 1), f64::from(n + 2)];
             let once = |u: f64| (u.powi(n + 1) - begin) / order;
             let twice =
                 |u: f64| (u.powi(n + 2) + begin) / (order * next) - begin * (1.0 + u) / order;
             for (i, u) in node.into_iter().enumerate() {
-                assert!((apply(&TABLE.once[i]) - once(u)).abs() < 2e-15, "u^{n}");
-                assert!((apply(&TABLE.twice[i]) - twice(u)).abs() < 2e-15, "u^{n}");
-                let ahead: f64 = (0..8)
-                    .map(|x| TABLE.ahead[x][i / 4][i % 4] * values[i ^ x])
-                    .sum();
+                let matrices = &TABLE.plain;
+                assert!((apply(&matrices.once, i) - once(u)).abs() < 2e-15, "u^{n}");
+                assert!(
+                    (apply(&matrices.twice, i) - twice(u)).abs() < 2e-15,
+                    "u^{n}"
+                );
+                let ahead = apply(&TABLE.ahead, i);
                 assert!((ahead - (u + 2.0).powi(n)).abs() < 1e-9, "u^{n}: {ahead}");
             }
             let column =
-                |row: usize| -> f64 { (0..8).map(|j| TABLE.end[j][row] * values[j]).sum() };
+                |row: usize| -> f64 { (0..8).map(|j| TABLE.plain.end[j][row] * values[j]).sum() };
             assert!((column(0) - twice(1.0)).abs() < 2e-15, "u^{n}");
             assert!((column(1) - once(1.0)).abs() < 2e-15, "u^{n}");
             // P_0 to P_7 are all 1 at u = 1.
