@@ -16,6 +16,7 @@ TESTS_INSTALLED := $(VENV)/installed-tests
 RELEASE_INSTALLED := $(VENV)/installed-release
 NODE_INSTALLED := $(VENV)/npm/node_modules/.package-lock.json
 PAGE_TESTS_INSTALLED := $(VENV)/installed-page-tests
+MOSAIK_INSTALLED := $(VENV)/installed-mosaik
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -93,7 +94,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
 .PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test $(CHECKS) lint-all audit bless \
-test-platforms stress soak \
+test-platforms test-mosaik stress soak \
 fuzz bench bench-device env clean
 
 help:
@@ -117,6 +118,7 @@ help:
 	@echo 'make wheel           build the Python package for every platform into target/wheel'
 	@echo 'make release         gather a release in target/releases (docs/releasing.md)'
 	@echo 'make test-platforms  run every platform (Wine, QEMU), build twice and compare (some minutes)'
+	@echo 'make test-mosaik     run it in mosaik-fmi, which is compiled first (some minutes; needs Boost)'
 	@echo 'make guide           write the user'"'"'s guide to target/guide'
 	@echo 'make page            write the live page, in which the actuator moves, to target/page/index.html'
 	@echo 'make env             print what plain cargo commands need: eval "$$(make -s env)"'
@@ -269,6 +271,10 @@ test-platforms: wheel $(TESTS_INSTALLED)
 	@$(PYTEST) tests/platforms -rsP --no-header
 	@$(PYTEST) tests/fmpy/test_archive.py
 
+test-mosaik: fmu $(TESTS_INSTALLED) $(MOSAIK_INSTALLED) $(PACKAGE_INSTALLED)
+	$(call heading,mosaik-fmi)
+	@PYTHONPATH=tests/hosts $(PYTEST) tests/mosaik
+
 stress: $(TESTS_INSTALLED)
 	$(call heading,Stress tests)
 	@STRESS=long $(NEXTEST) run --profile long --test stress
@@ -343,6 +349,14 @@ $(HOSTS_INSTALLED): tests/hosts/requirements.txt tests/hosts/requirements-cofmup
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/hosts/requirements.txt
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --upgrade --target $(VENV)/cofmupy \
 	--requirement tests/hosts/requirements-cofmupy.txt
+	@touch $@
+
+$(MOSAIK_INSTALLED): $(wildcard tests/mosaik/*requirements.txt) tests/mosaik/build_fmipp.py $(INSTALLED)
+	$(call heading,mosaik-fmi and fmipp)
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/mosaik/build-requirements.txt
+	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --upgrade --target $(VENV)/mosaik \
+	--requirement tests/mosaik/requirements.txt
+	$(PYTHON) tests/mosaik/build_fmipp.py $(PYTHON_IN_VENV) $(VENV)/mosaik
 	@touch $@
 
 # The Python package as it stands in the checkout, with the FMU of target/fmu.
