@@ -31,12 +31,12 @@ unsafe impl GlobalAlloc for Counting {
         if let Some([calls, bytes]) = COUNTED.get() {
             COUNTED.set(Some([calls + 1, bytes + layout.size()]));
         }
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller owes us what it owes `System`, to which everything is passed on.
         unsafe { System.alloc(layout) }
     }
 
     unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller owes us what it owes `System`, to which everything is passed on.
         unsafe { System.dealloc(pointer, layout) }
     }
 }

@@ -15,7 +15,7 @@ export function roundUp(number) {
 const room = (highest) => [1.5, 2, 2.5, 3, 4, 6, 10].find((one) => one >= highest) ?? 10;
 
 /**
- * Draws the membrane. `voltage` is that of the moment over the pull-in voltage or the scale, and sets how
+ * Draws the membrane. `voltage` is the present one over the pull-in voltage or the scale, and sets how
  * densely the charges lie.
  */
 export function draw(canvas, { device, stretch, highest, charge, positive, snapped }) {

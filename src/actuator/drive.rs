@@ -6,63 +6,12 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use super::harmonic::Harmonic;
+use super::harmonic::TURN;
 pub use super::polynomial::{HIGHEST_DERIVATIVE, Polynomial};
-use crate::solver::double::{Double, veltkamp_split};
+use crate::solver::double::Double;
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
-
-/// 2π.
-const TURN: Double = Double {
-    high: std::f64::consts::TAU,
-    low: 2.449_293_598_294_706_4e-16,
-};
-
-/// The built-in alternating voltage φ_a sin(ωt + ϑ), t being the time of the model.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Harmonic {
-    /// φ_a, nondimensional voltage.
-    pub amplitude: f64,
-    /// ω in radians per unit of time.
-    pub frequency: f64,
-    /// ϑ in radians.
-    pub phase: f64,
-}
-
-impl Harmonic {
-    /// No alternating voltage.
-    pub const OFF: Harmonic = Harmonic {
-        amplitude: 0.0,
-        frequency: 0.0,
-        phase: 0.0,
-    };
-
-    /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
-    /// t = 1e9 an f64 angle would have lost half its digits.
-    #[inline(always)]
-    fn angle(&self, time: Double) -> f64 {
-        /// 2π in 33 bits, so that its small multiples are exact, and the rest.
-        const PARTS: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
-        const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
-        let turns = (time.high * self.frequency) * (1.0 / std::f64::consts::TAU);
-        if turns.abs() < EXACT_TURNS {
-            let turns = turns.whole();
-            let [time_head, time_tail] = veltkamp_split(time.high);
-            let [head, tail] = veltkamp_split(self.frequency);
-            let rest = (time_head * tail + (time_tail + time.low) * self.frequency) + self.phase;
-            ((time_head * head - turns * PARTS[0]) - turns * PARTS[1]) + rest
-        } else {
-            self.late_angle(time)
-        }
-    }
-
-    /// The angle after more turns than the fast way can reduce.
-    #[inline(never)]
-    fn late_angle(&self, time: Double) -> f64 {
-        let angle = time.scale(self.frequency);
-        let turns = (angle.high * (1.0 / TURN.high)).round();
-        angle.sub(TURN.scale(turns)).value() + self.phase
-    }
-}
 
 /// Voltage and prestress from `since` on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -323,19 +272,6 @@ impl LocalDrive<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_angle_keeps_its_digits_at_late_times() {
-        let harmonic = Harmonic {
-            amplitude: 1.0,
-            frequency: 0.1471,
-            phase: 0.3,
-        };
-        // A million turns later, to the rounding of the time itself.
-        let turns = 1e6;
-        let late = TURN.scale(turns).div(Double::new(0.1471));
-        assert!((harmonic.angle(late) - 0.3).abs() < 1e-15);
-    }
 
     #[test]
     fn the_phase_runs_on_through_a_hundred_thousand_frequencies() {

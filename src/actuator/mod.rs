@@ -14,6 +14,7 @@ pub mod coefficients;
 pub mod device;
 pub mod drive;
 pub mod ensemble;
+mod harmonic;
 pub mod motion;
 pub mod parameters;
 mod polynomial;

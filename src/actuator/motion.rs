@@ -17,7 +17,7 @@ pub struct Motion {
     pub drive: Drive,
 }
 
-/// Squared voltage φ² and prestress S at a moment, or at lanes of moments.
+/// Squared voltage φ² and prestress S at a time, or at lanes of times.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<N> {
     /// φ².

@@ -7,7 +7,7 @@ use crate::solver::number::Number;
 /// Derivatives of an input that are taken into account: orders 1 to 4.
 pub const HIGHEST_DERIVATIVE: usize = 4;
 
-/// An input from the moment at which it was set: Σ `term[k]` sᵏ.
+/// An input from the time at which it was set: Σ `term[k]` sᵏ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Polynomial {
     pub(super) term: [f64; HIGHEST_DERIVATIVE + 1],
@@ -62,7 +62,7 @@ impl Polynomial {
         self.term[degree + 1..].iter().all(|term| *term == 0.0)
     }
 
-    /// Moves the moment from which its time counts by `shift`.
+    /// Moves the time from which its own counts by `shift`.
     #[inline(always)]
     pub fn shift(&mut self, shift: f64) {
         if self.is_constant() {
@@ -76,7 +76,7 @@ impl Polynomial {
         }
     }
 
-    /// The value at the moment in which the input was set.
+    /// The value at the time at which the input was set.
     #[must_use]
     #[inline]
     pub fn value(&self) -> f64 {

@@ -2,9 +2,9 @@
 
 use fmi::fmi2::binding::*;
 
-use super::component::guarded;
-use super::pointers::{place, slice, slice_mut};
-use crate::instance::Call;
+use super::calls::Call;
+use super::guard::{guarded, place, slice, slice_mut};
+
 use crate::model::Model;
 
 pub unsafe extern "C" fn fmi2EnterEventMode<M: Model>(c: fmi2Component) -> fmi2Status {
@@ -19,7 +19,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates<M: Model>(
     fmi2eventInfo: *mut fmi2EventInfo,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2NewDiscreteStates", Call::HandleEvent, |component| {
-        // SAFETY: see the head of this room.
+        // SAFETY: the host points to its structure, or passes null.
         let info = unsafe { place(fmi2eventInfo, "fmi2eventInfo") }?;
         let update = component.instance.new_discrete_states()?;
         *info = fmi2EventInfo {
@@ -57,9 +57,9 @@ pub unsafe extern "C" fn fmi2CompletedIntegratorStep<M: Model>(
         "fmi2CompletedIntegratorStep",
         Call::Integrate,
         |component| {
-            // SAFETY: see the head of this room.
+            // SAFETY: the host points to a place for one value, or passes null.
             let event = unsafe { place(enterEventMode, "enterEventMode") }?;
-            // SAFETY: see the head of this room.
+            // SAFETY: the host points to a place for one value, or passes null.
             let terminate = unsafe { place(terminateSimulation, "terminateSimulation") }?;
             *event = component.instance.completed_integrator_step()?.into();
             *terminate = false.into();
@@ -81,34 +81,76 @@ pub unsafe extern "C" fn fmi2SetContinuousStates<M: Model>(
     nx: usize,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2SetContinuousStates", Call::Integrate, |component| {
-        // SAFETY: see the head of this room.
+        // SAFETY: the host's array holds `nx` values, or is null.
         let states = unsafe { slice(x, nx, "x") }?;
         component.instance.set_continuous_states(states)?;
         Ok(None)
     })
 }
 
-/// Functions that fill an array of the host by a method of the instance.
-macro_rules! fill {
-    ($($function:ident($array:ident, $count:ident) by $method:ident as $call:ident;)*) => {$(
-                pub unsafe extern "C" fn $function<M: Model>(
-            c: fmi2Component,
-            $array: *mut fmi2Real,
-            $count: usize,
-        ) -> fmi2Status {
-            guarded::<M>(c, stringify!($function), Call::$call, |component| {
-                // SAFETY: see the head of this room.
-                let values = unsafe { slice_mut($array, $count, stringify!($array)) }?;
-                component.instance.$method(values)?;
-                Ok(None)
-            })
-        }
-    )*};
+pub unsafe extern "C" fn fmi2GetDerivatives<M: Model>(
+    c: fmi2Component,
+    derivatives: *mut fmi2Real,
+    nx: usize,
+) -> fmi2Status {
+    guarded::<M>(c, "fmi2GetDerivatives", Call::GetContinuous, |component| {
+        // SAFETY: the host's array has room for `nx` values, or is null.
+        let values = unsafe { slice_mut(derivatives, nx, "derivatives") }?;
+        component.instance.derivatives(values)?;
+        Ok(None)
+    })
 }
 
-fill! {
-    fmi2GetDerivatives(derivatives, nx) by derivatives as GetContinuous;
-    fmi2GetEventIndicators(eventIndicators, ni) by event_indicators as GetContinuous;
-    fmi2GetContinuousStates(x, nx) by continuous_states as GetContinuous;
-    fmi2GetNominalsOfContinuousStates(x_nominal, nx) by nominals_of_states as GetNominals;
+pub unsafe extern "C" fn fmi2GetEventIndicators<M: Model>(
+    c: fmi2Component,
+    eventIndicators: *mut fmi2Real,
+    ni: usize,
+) -> fmi2Status {
+    guarded::<M>(
+        c,
+        "fmi2GetEventIndicators",
+        Call::GetContinuous,
+        |component| {
+            // SAFETY: the host's array has room for `ni` values, or is null.
+            let values = unsafe { slice_mut(eventIndicators, ni, "eventIndicators") }?;
+            component.instance.event_indicators(values)?;
+            Ok(None)
+        },
+    )
+}
+
+pub unsafe extern "C" fn fmi2GetContinuousStates<M: Model>(
+    c: fmi2Component,
+    x: *mut fmi2Real,
+    nx: usize,
+) -> fmi2Status {
+    guarded::<M>(
+        c,
+        "fmi2GetContinuousStates",
+        Call::GetContinuous,
+        |component| {
+            // SAFETY: the host's array has room for `nx` values, or is null.
+            let values = unsafe { slice_mut(x, nx, "x") }?;
+            component.instance.continuous_states(values)?;
+            Ok(None)
+        },
+    )
+}
+
+pub unsafe extern "C" fn fmi2GetNominalsOfContinuousStates<M: Model>(
+    c: fmi2Component,
+    x_nominal: *mut fmi2Real,
+    nx: usize,
+) -> fmi2Status {
+    guarded::<M>(
+        c,
+        "fmi2GetNominalsOfContinuousStates",
+        Call::GetNominals,
+        |component| {
+            // SAFETY: the host's array has room for `nx` values, or is null.
+            let values = unsafe { slice_mut(x_nominal, nx, "x_nominal") }?;
+            component.instance.nominals_of_states(values)?;
+            Ok(None)
+        },
+    )
 }

@@ -1,6 +1,9 @@
 //! The C functions of FMI 2.0 (`fmi2Functions.h`): the only room with unsafe
 //! code. Each function turns pointers into slices and delegates to one method
-//! of the instance, inside the guard of `component`.
+//! of the instance, inside the guard of `guard`.
+//!
+//! In this file: what a simulation calls from step to step. What begins and ends it is in
+//! `lifecycle`, what is asked about a step in `status`.
 //!
 //! Safety of all of them: the host owes what the standard says, that is,
 //! components from `fmi2Instantiate` that have not been freed and are used by
@@ -17,28 +20,28 @@
 )]
 #![expect(non_snake_case, reason = "names of the standard")]
 
-mod component;
+mod calls;
 mod envelope;
 mod exchange;
 mod export;
 pub mod float_environment;
-mod pointers;
+mod guard;
+mod host;
+mod lifecycle;
 mod state;
-mod stepping;
-
-use std::ffi::CStr;
+mod status;
 
 use fmi::fmi2::binding::*;
-use libc::c_char;
 
-use crate::instance::{Call, Fault, Instance, Interface, Type};
+use crate::instance::{Instance, Type};
 use crate::model::Model;
-use component::{Component, Host, done_at_once, free, guarded, guarded_in_place, instantiated};
+use calls::Call;
 pub use exchange::*;
 pub use export::EXPORTED_NAMES;
-use pointers::{readable, slice, slice_mut, text, writable};
+use guard::{done_at_once, guarded, guarded_in_place, readable, slice, slice_mut, writable};
+pub use lifecycle::*;
 pub use state::*;
-pub use stepping::*;
+pub use status::*;
 
 /// The C types of the standard, for the crates that export its functions.
 pub mod c {
@@ -46,212 +49,7 @@ pub mod c {
     pub use libc::c_char;
 }
 
-// ---- Inquire version, create and destroy ----
-
-pub unsafe extern "C" fn fmi2GetTypesPlatform<M: Model>() -> *const c_char {
-    c"default".as_ptr()
-}
-
-pub unsafe extern "C" fn fmi2GetVersion<M: Model>() -> *const c_char {
-    c"2.0".as_ptr()
-}
-
-pub unsafe extern "C" fn fmi2SetDebugLogging<M: Model>(
-    c: fmi2Component,
-    loggingOn: fmi2Boolean,
-    nCategories: usize,
-    categories: *const fmi2String,
-) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2SetDebugLogging",
-        Call::SetDebugLogging,
-        |component| {
-            // SAFETY: see the head of this file.
-            let categories = unsafe { slice(categories, nCategories, "categories") }?;
-            let categories: Result<Vec<&CStr>, Fault> = categories
-                .iter()
-                // SAFETY: see the head of this file.
-                .map(|&category| unsafe { text(category, "a category") })
-                .collect();
-            component.host.set_logging(loggingOn != 0, &categories?)?;
-            Ok(None)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2Instantiate<M: Model>(
-    instanceName: fmi2String,
-    fmuType: fmi2Type,
-    fmuGUID: fmi2String,
-    _fmuResourceLocation: fmi2String,
-    functions: *const fmi2CallbackFunctions,
-    _visible: fmi2Boolean,
-    loggingOn: fmi2Boolean,
-) -> fmi2Component {
-    // SAFETY: null, or the host's structure (FMI 2.0, section 2.1.5).
-    let Some(&callbacks) = (unsafe { functions.as_ref() }) else {
-        return std::ptr::null_mut();
-    };
-    // SAFETY: see the head of this file.
-    let name = unsafe { text(instanceName, "the instance name") };
-    let host = Host::new(callbacks, name.as_ref().unwrap_or(&c""), loggingOn != 0);
-    instantiated(host, || {
-        if name?.is_empty() {
-            return Err(Fault::error("the instance name is empty".into()));
-        }
-        let interface = if fmuType == fmi2Type_fmi2CoSimulation {
-            Interface::CoSimulation
-        } else if fmuType == fmi2Type_fmi2ModelExchange {
-            Interface::ModelExchange
-        } else {
-            return Err(Fault::error(format!(
-                "there is no FMU type {fmuType}; co-simulation and model exchange are offered"
-            )));
-        };
-        // SAFETY: see the head of this file.
-        let guid = unsafe { text(fmuGUID, "the GUID") }?;
-        if guid.to_bytes() != M::GUID.as_bytes() {
-            return Err(Fault::error(format!(
-                "the GUID is not {}: binary and modelDescription.xml do not belong together",
-                M::GUID
-            )));
-        }
-        Ok(Instance::<M>::of(interface))
-    })
-}
-
-pub unsafe extern "C" fn fmi2FreeInstance<M: Model>(c: fmi2Component) {
-    if !c.is_null() {
-        // SAFETY: made by `fmi2Instantiate`, and freed once (see the head).
-        free(unsafe { Box::from_raw(c.cast::<Component<M>>()) });
-    }
-}
-
-// ---- Enter and exit initialization, terminate, reset ----
-
-pub unsafe extern "C" fn fmi2SetupExperiment<M: Model>(
-    c: fmi2Component,
-    toleranceDefined: fmi2Boolean,
-    tolerance: fmi2Real,
-    startTime: fmi2Real,
-    stopTimeDefined: fmi2Boolean,
-    stopTime: fmi2Real,
-) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2SetupExperiment",
-        Call::SetupExperiment,
-        |component| {
-            let tolerance = (toleranceDefined != 0).then_some(tolerance);
-            let stop_time = (stopTimeDefined != 0).then_some(stopTime);
-            component
-                .instance
-                .setup_experiment(tolerance, startTime, stop_time)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2EnterInitializationMode<M: Model>(c: fmi2Component) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2EnterInitializationMode",
-        Call::EnterInitialization,
-        |component| {
-            component.instance.enter_initialization();
-            Ok(None)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2ExitInitializationMode<M: Model>(c: fmi2Component) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2ExitInitializationMode",
-        Call::ExitInitialization,
-        |component| {
-            component.instance.exit_initialization()?;
-            Ok(None)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2Terminate<M: Model>(c: fmi2Component) -> fmi2Status {
-    guarded::<M>(c, "fmi2Terminate", Call::Terminate, |component| {
-        component.instance.terminate();
-        Ok(None)
-    })
-}
-
-pub unsafe extern "C" fn fmi2Reset<M: Model>(c: fmi2Component) -> fmi2Status {
-    guarded::<M>(c, "fmi2Reset", Call::Reset, |component| {
-        component.instance.reset();
-        Ok(None)
-    })
-}
-
-// ---- Get and set variables ----
-
-/// The getter of one type; `$convert` makes its values of ours.
-macro_rules! getter {
-    ($function:ident, $value:ty, $type:expr, $convert:expr) => {
-        pub unsafe extern "C" fn $function<M: Model>(
-            c: fmi2Component,
-            vr: *const fmi2ValueReference,
-            nvr: usize,
-            value: *mut $value,
-        ) -> fmi2Status {
-            guarded::<M>(c, stringify!($function), Call::Get, |component| {
-                // SAFETY: see the head of this file.
-                let references = unsafe { slice(vr, nvr, "vr") }?;
-                // SAFETY: see the head of this file.
-                let values = unsafe { slice_mut(value, nvr, "value") }?;
-                let convert: fn(f64) -> $value = $convert;
-                // One function for all types.
-                let store: &mut dyn FnMut(usize, f64) =
-                    &mut |place, number| values[place] = convert(number);
-                component.instance.get($type, references, store)?;
-                Ok(None)
-            })
-        }
-    };
-}
-
-/// The setter of one type; `$convert` makes our values of its.
-macro_rules! setter {
-    ($visible:vis $function:ident, $name:literal, $value:ty, $type:expr, $convert:expr) => {
-        $visible unsafe extern "C" fn $function<M: Model>(
-            c: fmi2Component,
-            vr: *const fmi2ValueReference,
-            nvr: usize,
-            value: *const $value,
-        ) -> fmi2Status {
-            guarded::<M>(c, $name, Call::Set, |component| {
-                // SAFETY: see the head of this file.
-                let references = unsafe { slice(vr, nvr, "vr") }?;
-                // SAFETY: see the head of this file.
-                let values = unsafe { slice(value, nvr, "value") }?;
-                let convert: fn($value) -> f64 = $convert;
-                // One function for all types.
-                let value: &dyn Fn(usize) -> f64 = &|place| convert(values[place]);
-                component.instance.set($type, references, value)?;
-                Ok(None)
-            })
-        }
-    };
-}
-
-getter!(fmi2GetInteger, fmi2Integer, Type::Integer, |number| number
-    as fmi2Integer);
-getter!(fmi2GetBoolean, fmi2Boolean, Type::Boolean, |number| number
-    as fmi2Boolean);
-getter!(fmi2GetString, fmi2String, Type::String, |_| std::ptr::null(
-));
-// Where an input does not keep its value, or is none.
-setter!(set_real, "fmi2SetReal", fmi2Real, Type::Real, |value| value);
-setter!(pub fmi2SetInteger, "fmi2SetInteger", fmi2Integer, Type::Integer, f64::from);
-setter!(pub fmi2SetBoolean, "fmi2SetBoolean", fmi2Boolean, Type::Boolean, f64::from);
-setter!(pub fmi2SetString, "fmi2SetString", fmi2String, Type::String, |_| 0.0);
+// ---- Get variables ----
 
 pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     c: fmi2Component,
@@ -260,7 +58,7 @@ pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     value: *mut fmi2Real,
 ) -> fmi2Status {
     let at_once = |instance: &mut Instance<M>| {
-        // SAFETY: see the head of this file.
+        // SAFETY: the host's arrays hold `nvr` values each, or are null.
         match unsafe { (readable(vr, nvr), writable(value, nvr)) } {
             (Some(&[reference]), Some([value])) => instance.get_stored(reference, value),
             _ => false,
@@ -269,7 +67,7 @@ pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     if done_at_once::<M>(c, Call::Get, at_once) {
         return fmi2Status_fmi2OK;
     }
-    // SAFETY: see the head of this file.
+    // SAFETY: the arguments are the host's, as they came.
     unsafe { get_real::<M>(c, vr, nvr, value) }
 }
 
@@ -282,15 +80,88 @@ unsafe fn get_real<M: Model>(
     value: *mut fmi2Real,
 ) -> fmi2Status {
     guarded_in_place::<M>(c, "fmi2GetReal", Call::Get, |component| {
-        // SAFETY: see the head of this file.
+        // SAFETY: the host's array holds `nvr` value references, or is null.
         let references = unsafe { slice(vr, nvr, "vr") }?;
-        // SAFETY: see the head of this file.
+        // SAFETY: the host's array has room for `nvr` values, or is null.
         let values = unsafe { slice_mut(value, nvr, "value") }?;
         let store = |place: usize, number| values[place] = number;
         component.instance.get(Type::Real, references, store)?;
         Ok(None)
     })
 }
+
+pub unsafe extern "C" fn fmi2GetInteger<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Integer,
+) -> fmi2Status {
+    let convert = |number| number as fmi2Integer;
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        get::<M, _>(
+            c,
+            "fmi2GetInteger",
+            Type::Integer,
+            (vr, value, nvr),
+            convert,
+        )
+    }
+}
+
+pub unsafe extern "C" fn fmi2GetBoolean<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2Boolean,
+) -> fmi2Status {
+    let convert = |number| number as fmi2Boolean;
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        get::<M, _>(
+            c,
+            "fmi2GetBoolean",
+            Type::Boolean,
+            (vr, value, nvr),
+            convert,
+        )
+    }
+}
+
+/// No model has a String variable: any value reference is refused.
+pub unsafe extern "C" fn fmi2GetString<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *mut fmi2String,
+) -> fmi2Status {
+    let convert = |_| std::ptr::null();
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { get::<M, _>(c, "fmi2GetString", Type::String, (vr, value, nvr), convert) }
+}
+
+/// Gets variables of one type; `convert` makes its values of ours.
+unsafe fn get<M: Model, T>(
+    c: fmi2Component,
+    function: &str,
+    of: Type,
+    (vr, value, nvr): (*const fmi2ValueReference, *mut T, usize),
+    convert: fn(f64) -> T,
+) -> fmi2Status {
+    guarded::<M>(c, function, Call::Get, |component| {
+        // SAFETY: the host's array holds `nvr` value references, or is null.
+        let references = unsafe { slice(vr, nvr, "vr") }?;
+        // SAFETY: the host's array has room for `nvr` values, or is null.
+        let values = unsafe { slice_mut(value, nvr, "value") }?;
+        // One function for all types.
+        let store: &mut dyn FnMut(usize, f64) =
+            &mut |place, number| values[place] = convert(number);
+        component.instance.get(of, references, store)?;
+        Ok(None)
+    })
+}
+
+// ---- Set variables ----
 
 pub unsafe extern "C" fn fmi2SetReal<M: Model>(
     c: fmi2Component,
@@ -299,7 +170,7 @@ pub unsafe extern "C" fn fmi2SetReal<M: Model>(
     value: *const fmi2Real,
 ) -> fmi2Status {
     let at_once = |instance: &mut Instance<M>| {
-        // SAFETY: see the head of this file.
+        // SAFETY: the host's arrays hold `nvr` values each, or are null.
         match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
             (Some(&[reference]), Some(&[value])) => instance.set_held(reference, value),
             (Some(references), Some(values)) => instance.set_all_held(references, values),
@@ -309,11 +180,83 @@ pub unsafe extern "C" fn fmi2SetReal<M: Model>(
     if done_at_once::<M>(c, Call::Set, at_once) {
         return fmi2Status_fmi2OK;
     }
-    // SAFETY: see the head of this file.
-    unsafe { set_real::<M>(c, vr, nvr, value) }
+    // Where an input does not keep its value, or is none.
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        set::<M, _>(c, "fmi2SetReal", Type::Real, (vr, value, nvr), |value| {
+            value
+        })
+    }
 }
 
-// ---- Directional derivatives ----
+pub unsafe extern "C" fn fmi2SetInteger<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Integer,
+) -> fmi2Status {
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        set::<M, _>(
+            c,
+            "fmi2SetInteger",
+            Type::Integer,
+            (vr, value, nvr),
+            f64::from,
+        )
+    }
+}
+
+pub unsafe extern "C" fn fmi2SetBoolean<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Boolean,
+) -> fmi2Status {
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        set::<M, _>(
+            c,
+            "fmi2SetBoolean",
+            Type::Boolean,
+            (vr, value, nvr),
+            f64::from,
+        )
+    }
+}
+
+/// No model has a String variable: any value reference is refused.
+pub unsafe extern "C" fn fmi2SetString<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2String,
+) -> fmi2Status {
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { set::<M, _>(c, "fmi2SetString", Type::String, (vr, value, nvr), |_| 0.0) }
+}
+
+/// Sets variables of one type; `convert` makes our values of its.
+unsafe fn set<M: Model, T: Copy>(
+    c: fmi2Component,
+    function: &str,
+    of: Type,
+    (vr, value, nvr): (*const fmi2ValueReference, *const T, usize),
+    convert: fn(T) -> f64,
+) -> fmi2Status {
+    guarded::<M>(c, function, Call::Set, |component| {
+        // SAFETY: the host's array holds `nvr` value references, or is null.
+        let references = unsafe { slice(vr, nvr, "vr") }?;
+        // SAFETY: the host's array holds `nvr` values, or is null.
+        let values = unsafe { slice(value, nvr, "value") }?;
+        // One function for all types.
+        let value: &dyn Fn(usize) -> f64 = &|place| convert(values[place]);
+        component.instance.set(of, references, value)?;
+        Ok(None)
+    })
+}
+
+// ---- Derivatives ----
 
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative<M: Model>(
     c: fmi2Component,
@@ -329,13 +272,13 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative<M: Model>(
         "fmi2GetDirectionalDerivative",
         Call::DirectionalDerivative,
         |component| {
-            // SAFETY: see the head of this file.
+            // SAFETY: the host's array holds `nUnknown` value references, or is null.
             let unknowns = unsafe { slice(vUnknown_ref, nUnknown, "vUnknown_ref") }?;
-            // SAFETY: see the head of this file.
+            // SAFETY: the host's array holds `nKnown` value references, or is null.
             let knowns = unsafe { slice(vKnown_ref, nKnown, "vKnown_ref") }?;
-            // SAFETY: see the head of this file.
+            // SAFETY: the host's array holds `nKnown` values, or is null.
             let changes = unsafe { slice(dvKnown, nKnown, "dvKnown") }?;
-            // SAFETY: see the head of this file.
+            // SAFETY: the host's array has room for `nUnknown` values, or is null.
             let derivatives = unsafe { slice_mut(dvUnknown, nUnknown, "dvUnknown") }?;
             component.instance.directional_derivative(
                 unknowns,
@@ -346,4 +289,71 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative<M: Model>(
             Ok(None)
         },
     )
+}
+
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    guarded::<M>(
+        c,
+        "fmi2SetRealInputDerivatives",
+        Call::SetInputDerivatives,
+        |component| {
+            // SAFETY: the host's array holds `nvr` value references, or is null.
+            let references = unsafe { slice(vr, nvr, "vr") }?;
+            // SAFETY: the host's array holds `nvr` orders, or is null.
+            let orders = unsafe { slice(order, nvr, "order") }?;
+            // SAFETY: the host's array holds `nvr` values, or is null.
+            let values = unsafe { slice(value, nvr, "value") }?;
+            component
+                .instance
+                .set_input_derivatives(references, orders, values)?;
+            Ok(None)
+        },
+    )
+}
+
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
+) -> fmi2Status {
+    guarded::<M>(
+        c,
+        "fmi2GetRealOutputDerivatives",
+        Call::GetOutputDerivatives,
+        |component| {
+            // SAFETY: the host's array holds `nvr` value references, or is null.
+            let references = unsafe { slice(vr, nvr, "vr") }?;
+            // SAFETY: the host's array holds `nvr` orders, or is null.
+            let orders = unsafe { slice(order, nvr, "order") }?;
+            // SAFETY: the host's array has room for `nvr` values, or is null.
+            let values = unsafe { slice_mut(value, nvr, "value") }?;
+            component
+                .instance
+                .output_derivatives(references, orders, |place, number| values[place] = number)?;
+            Ok(None)
+        },
+    )
+}
+
+// ---- Step ----
+
+pub unsafe extern "C" fn fmi2DoStep<M: Model>(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    guarded_in_place::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
+        component
+            .instance
+            .do_step(currentCommunicationPoint, communicationStepSize)
+    })
 }

@@ -2,10 +2,10 @@
 
 use fmi::fmi2::binding::*;
 
-use super::component::{Component, guarded};
+use super::calls::Call;
 use super::envelope;
-use super::pointers::{place, slice, slice_mut};
-use crate::instance::{Call, Fault};
+use super::guard::{Component, guarded, place, slice, slice_mut};
+use crate::instance::Fault;
 use crate::model::Model;
 
 /// What stands behind an `fmi2FMUstate`: a saved instance.
@@ -20,13 +20,13 @@ struct Saved {
 /// [`fmi2DeSerializeFMUstate`] and not have been freed: the host owes it to us
 /// (FMI 2.0, section 2.1.8).
 unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Fault> {
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller passes null, or a state that we gave and that the host has not freed.
     unsafe { place(state.cast::<Saved>(), "the state") }
 }
 
 /// Hands `bytes` to the host, in the state that it has already or in a new one.
 fn hand_out(state: &mut fmi2FMUstate, bytes: Vec<u8>) {
-    // SAFETY: null, or a state that we gave (see `saved`).
+    // SAFETY: the host holds null, or a state that we gave and that it has not freed.
     match unsafe { saved(*state) } {
         Ok(old) => old.bytes = bytes,
         Err(_) => *state = Box::into_raw(Box::new(Saved { bytes })).cast(),
@@ -38,9 +38,9 @@ pub unsafe extern "C" fn fmi2GetFMUstate<M: Model>(
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2GetFMUstate", Call::State, |component| {
-        // SAFETY: see the head of this room.
+        // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
-        // SAFETY: null, or a state that we gave (see `saved`).
+        // SAFETY: the host holds null, or a state that we gave and that it has not freed.
         let memory = unsafe { saved(*state) }.map(|old| std::mem::take(&mut old.bytes));
         let bytes = component.instance.save(memory.unwrap_or_default())?;
         hand_out(state, bytes);
@@ -53,7 +53,7 @@ pub unsafe extern "C" fn fmi2SetFMUstate<M: Model>(
     FMUstate: fmi2FMUstate,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2SetFMUstate", Call::State, |component| {
-        // SAFETY: see `saved`.
+        // SAFETY: the host passes null, or a state that we gave and that it has not freed.
         let state = unsafe { saved(FMUstate) }?;
         component.instance.restore(&state.bytes)?;
         Ok(None)
@@ -65,11 +65,11 @@ pub unsafe extern "C" fn fmi2FreeFMUstate<M: Model>(
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2FreeFMUstate", Call::FreeState, |_| {
-        // SAFETY: see the head of this room.
+        // SAFETY: the host points to a place for one value, or passes null.
         if let Ok(state) = unsafe { place(FMUstate, "FMUstate") }
             && !state.is_null()
         {
-            // SAFETY: a state that we gave, freed once (see `saved`).
+            // SAFETY: a state that we gave, made of a `Box`; the host frees it once.
             drop(unsafe { Box::from_raw(state.cast::<Saved>()) });
             *state = std::ptr::null_mut();
         }
@@ -83,9 +83,9 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize<M: Model>(
     size: *mut usize,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2SerializedFMUstateSize", Call::State, |_| {
-        // SAFETY: see `saved`.
+        // SAFETY: the host passes null, or a state that we gave and that it has not freed.
         let state = unsafe { saved(FMUstate) }?;
-        // SAFETY: see the head of this room.
+        // SAFETY: the host points to a place for one value, or passes null.
         *unsafe { place(size, "size") }? = envelope::size::<M>(&state.bytes);
         Ok(None)
     })
@@ -98,9 +98,10 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate<M: Model>(
     size: usize,
 ) -> fmi2Status {
     guarded::<M>(c, "fmi2SerializeFMUstate", Call::State, |_| {
-        // SAFETY: see `saved`.
+        // SAFETY: the host passes null, or a state that we gave and that it has not freed.
         let state = unsafe { saved(FMUstate) }?;
-        // SAFETY: see the head of this room; any byte is as good as another.
+        // SAFETY: the host's array has room for `size` bytes, or is null; `u8` is as wide as its
+        // `char`.
         let target = unsafe { slice_mut(serializedState.cast::<u8>(), size, "serializedState") }?;
         envelope::seal::<M>(&state.bytes, target)?;
         Ok(None)
@@ -114,9 +115,9 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate<M: Model>(
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
     let body = |component: &mut Component<M>| {
-        // SAFETY: see the head of this room; any byte is as good as another.
+        // SAFETY: the host's array holds `size` bytes, or is null; `u8` is as wide as its `char`.
         let sealed = unsafe { slice(serializedState.cast::<u8>(), size, "serializedState") }?;
-        // SAFETY: see the head of this room.
+        // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         let bytes = envelope::open::<M>(sealed)?;
         component.instance.saved(bytes)?;

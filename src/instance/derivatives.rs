@@ -118,10 +118,10 @@ impl<M: Model> Instance<M> {
                 )));
             }
         }
-        let moment = M::along(&self.view(), &self.direction(knowns, changes)?);
+        let sample = M::along(&self.view(), &self.direction(knowns, changes)?);
         for (place, &unknown) in unknowns.iter().enumerate() {
             if let Some(derivatives) = derivatives_of(&M::VARIABLES[unknown as usize]) {
-                store(place, (derivatives.along)(&moment).slope());
+                store(place, (derivatives.along)(&sample).slope());
             }
         }
         Ok(())
@@ -183,10 +183,14 @@ fn derivatives_of<M: Model>(variable: &Variable<M>) -> Option<Derivatives<M>> {
 }
 
 fn not_known<M: Model>(variable: &Variable<M>) -> Fault {
+    let states = M::STATES
+        .iter()
+        .map(|&state| M::VARIABLES[state as usize].name);
     Fault::error(format!(
-        "{} cannot be differentiated by; only real inputs and parameters can, and the \
-         states lambda and lambda_dot after initialization",
-        variable.name
+        "{} cannot be differentiated by; only real inputs and parameters can, and after \
+         initialization the states {}",
+        variable.name,
+        states.collect::<Vec<_>>().join(", ")
     ))
 }
 

@@ -4,9 +4,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
-use super::{Course, Event, Fault, Instance, check_time};
+use super::{Event, Fault, Instance, Simulation, check_time};
 use crate::model::variables::{Access, Kind};
-use crate::model::{Account, AtLimit, Collapse, Model, Recording};
+use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -14,7 +14,7 @@ use crate::solver::double::Double;
 /// closer than this part of the limit it has been reached.
 const REACHED: f64 = 1e-9;
 
-/// The moment up to which the host has integrated.
+/// How far the host has integrated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Exchange<M: Model> {
@@ -40,7 +40,7 @@ pub struct Update {
 }
 
 /// A recording of the extremes from this state on, where the scene asks for one.
-pub(super) fn recording<M: Model>(scene: &M::Scene, time: Double, state: &M::State) -> Recording {
+fn recording<M: Model>(scene: &M::Scene, time: Double, state: &M::State) -> Recording {
     Recording::begin(M::records_extremes(scene), time, M::second_order(state))
 }
 
@@ -57,13 +57,31 @@ impl<M: Model> Exchange<M> {
         }
     }
 
+    /// The present state, with what is recorded of the way to it.
+    pub(super) fn place<'a>(&self) -> Place<'a, M> {
+        Place::At {
+            state: self.state,
+            record: self.record,
+            account: self.account,
+        }
+    }
+
+    /// The collapse as it can be read: also one that has not been handled as an event yet, where
+    /// the simulation is to end there.
+    pub(super) fn visible_collapse(&self, scene: &M::Scene) -> Option<&Collapse<M::Limit>> {
+        let ends = |at: &&Collapse<M::Limit>| M::at_limit(scene, at.limit) == AtLimit::Terminate;
+        self.collapse
+            .as_ref()
+            .or(self.arrival.as_ref().filter(ends))
+    }
+
     /// Starts what is recorded anew, at the present.
     pub(super) fn record_anew(&mut self, scene: &M::Scene) {
         self.record = recording::<M>(scene, self.time, &self.state);
     }
 
     /// Whether the numbers can be those of a motion.
-    pub(super) fn is_sound(&self, scene: &M::Scene) -> bool {
+    pub(super) fn is_valid(&self, scene: &M::Scene) -> bool {
         let mut collapses = self.collapse.iter().chain(&self.arrival);
         M::is_finite(&self.state)
             && self.time.is_finite()
@@ -75,8 +93,8 @@ impl<M: Model> Exchange<M> {
 
 impl<M: Model> Instance<M> {
     fn exchange(&mut self) -> Result<&mut Exchange<M>, Fault> {
-        match &mut self.course {
-            Course::Exchange(exchange) => Ok(exchange),
+        match &mut self.simulation {
+            Simulation::Exchange(exchange) => Ok(exchange),
             _ => Err(Fault::error("the initialization has not been ended".into())),
         }
     }
@@ -89,13 +107,13 @@ impl<M: Model> Instance<M> {
     /// Ends the handling of events.
     pub fn enter_continuous_time(&mut self) {
         self.phase = Phase::ContinuousTime;
-        if let Course::Exchange(Exchange {
+        if let Simulation::Exchange(Exchange {
             time,
             state,
             record,
             account,
             ..
-        }) = &mut self.course
+        }) = &mut self.simulation
         {
             account.include(&self.scene, *time, state);
             record.include(M::limits(&self.scene), *time, M::second_order(state));

@@ -1,6 +1,6 @@
 //! What a call answers when it cannot do as asked.
 
-/// How a call ends that did not do what was asked (FMI 2.0, section 2.1.3).
+/// How a call ends that did not do what was asked, as a status of FMI.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Severity {
     /// The step ended early; the host should terminate.

@@ -14,15 +14,14 @@ mod values;
 
 pub use exchange::{Exchange, Update};
 pub use fault::{Event, Fault, Severity};
-pub use phase::{Call, Interface, Phase};
+pub use phase::{Interface, Phase};
 pub use run::{Run, STEP_RANGE};
 pub use state::LAYOUT as STATE_LAYOUT;
 pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::variables::Access;
-use crate::model::{Account, AtLimit, Model, Place, View};
+use crate::model::Model;
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
 
@@ -48,12 +47,12 @@ impl Experiment {
     };
 }
 
-/// Where the motion is.
+/// How far the simulation is.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(bound = "")]
-enum Course<M: Model> {
+enum Simulation<M: Model> {
     /// Initialization has not ended.
-    Ahead,
+    NotBegun,
     /// We integrate it.
     Run(Box<Run<M>>),
     /// The host integrates it.
@@ -68,7 +67,7 @@ pub struct Instance<M: Model> {
     phase: Phase,
     scene: M::Scene,
     experiment: Experiment,
-    course: Course<M>,
+    simulation: Simulation<M>,
     /// Which inputs have derivatives that no step has used yet, a bit each.
     fresh_derivatives: u64,
 }
@@ -94,107 +93,23 @@ impl<M: Model> Instance<M> {
             phase: Phase::Instantiated,
             scene: M::at_start(),
             experiment: Experiment::DEFAULT,
-            course: Course::Ahead,
+            simulation: Simulation::NotBegun,
             fresh_derivatives: 0,
         }
     }
 
     /// The present phase.
     #[must_use]
+    #[inline]
     pub fn phase(&self) -> Phase {
         self.phase
     }
 
-    /// Whether the standard allows this call at present.
+    /// What kind of unit it is.
     #[must_use]
     #[inline]
-    pub fn permits(&self, call: Call) -> bool {
-        self.phase.permits(call) && call.is_part_of(self.interface)
-    }
-
-    /// Whether the standard allows this call at present, and why not.
-    ///
-    /// # Errors
-    /// Error where it does not, Fatal after a fatal error.
-    pub fn check(&self, call: Call) -> Result<(), Fault> {
-        if self.permits(call) {
-            Ok(())
-        } else {
-            Err(self.refusal(call))
-        }
-    }
-
-    /// Why the call is not allowed at present.
-    #[cold]
-    fn refusal(&self, call: Call) -> Fault {
-        let severity = if self.phase == Phase::Fatal {
-            Severity::Fatal
-        } else {
-            Severity::Error
-        };
-        let kind = match self.interface {
-            Interface::CoSimulation => "co-simulation",
-            Interface::ModelExchange => "model exchange",
-        };
-        let text = match call {
-            Call::CancelStep => "no step is in progress: fmi2DoStep returns when it is done".into(),
-            _ => format!(
-                "not allowed in the phase \"{}\" of {kind}",
-                self.phase.name()
-            ),
-        };
-        Fault { severity, text }
-    }
-
-    /// What can be read at present.
-    #[must_use]
-    pub fn view(&self) -> View<'_, M> {
-        let scene = &self.scene;
-        let (place, time, collapse) = match &self.course {
-            Course::Run(run) => (Place::On(run.motion()), run.time(), run.collapse()),
-            Course::Exchange(now) => {
-                let Exchange {
-                    state,
-                    record,
-                    account,
-                    ..
-                } = *now;
-                let arrival = now
-                    .arrival
-                    .as_ref()
-                    .filter(|at| M::at_limit(scene, at.limit) == AtLimit::Terminate);
-                (
-                    Place::At {
-                        state,
-                        record,
-                        account,
-                    },
-                    &now.time,
-                    now.collapse.as_ref().or(arrival),
-                )
-            }
-            Course::Ahead => {
-                // The drive counts from the start time.
-                let (state, time) = (M::start(scene), M::inputs_since(scene));
-                let record = exchange::recording::<M>(scene, *time, &state);
-                let account = M::Account::begin(scene, *time, &state);
-                (
-                    Place::At {
-                        state,
-                        record,
-                        account,
-                    },
-                    time,
-                    None,
-                )
-            }
-        };
-        View {
-            scene,
-            place,
-            time,
-            collapse,
-        }
+    pub fn interface(&self) -> Interface {
+        self.interface
     }
 
     /// Sets start time, stop time and tolerance of the simulation. Returns an
@@ -261,47 +176,15 @@ impl<M: Model> Instance<M> {
         match self.interface {
             Interface::CoSimulation => {
                 let tolerance = self.experiment.tolerance;
-                self.course = Course::Run(Box::new(Run::new(&self.scene, time, tolerance)));
+                self.simulation = Simulation::Run(Box::new(Run::new(&self.scene, time, tolerance)));
                 self.phase = Phase::StepComplete;
             }
             Interface::ModelExchange => {
-                self.course = Course::Exchange(Exchange::new(&self.scene, time));
+                self.simulation = Simulation::Exchange(Exchange::new(&self.scene, time));
                 self.phase = Phase::EventMode;
             }
         }
         Ok(())
-    }
-
-    /// Moves the actuator by one communication step. Returns an event where the
-    /// actuator has collapsed in it.
-    ///
-    /// # Errors
-    /// Error for a step that cannot be meant, with nothing changed; Discard
-    /// where the step ends early, at [`Instance::last_successful_time`].
-    pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
-        let Course::Run(run) = &mut self.course else {
-            return Err(Fault::error("the initialization has not been ended".into()));
-        };
-        let stop_time = self.experiment.stop_time;
-        let outcome = run
-            .check_step(current, step, stop_time)
-            .and_then(|deviation| {
-                if deviation != 0.0 {
-                    set_clock(
-                        run,
-                        &mut self.scene,
-                        self.fresh_derivatives,
-                        current,
-                        deviation,
-                    );
-                }
-                self.fresh_derivatives = 0;
-                run.step(&self.scene, current, step)
-            });
-        if matches!(&outcome, Err(fault) if fault.severity == Severity::Discard) && !run.was_cut() {
-            self.phase = Phase::StepFailed;
-        }
-        outcome
     }
 
     /// Ends the simulation.
@@ -328,7 +211,7 @@ impl<M: Model> Instance<M> {
     /// Whether the last step ended early.
     #[must_use]
     pub fn last_step_was_discarded(&self) -> bool {
-        let cut = matches!(&self.course, Course::Run(run) if run.was_cut());
+        let cut = matches!(&self.simulation, Simulation::Run(run) if run.was_cut());
         cut || self.phase == Phase::StepFailed
     }
 
@@ -336,38 +219,6 @@ impl<M: Model> Instance<M> {
     #[must_use]
     pub fn wants_to_terminate(&self) -> bool {
         self.phase == Phase::StepFailed
-    }
-
-    /// Counts the time of the drive from the present communication point on.
-    fn bring_drive_up_to_date(&mut self) {
-        if let Some(time) = self.now() {
-            M::rebase_inputs(&mut self.scene, time);
-        }
-    }
-
-    /// The present communication point; none before the motion has begun.
-    fn now(&self) -> Option<Double> {
-        match &self.course {
-            Course::Ahead => None,
-            Course::Run(run) => Some(*run.time()),
-            Course::Exchange(now) => Some(now.time),
-        }
-    }
-
-    /// Starts what is recorded anew, at the present.
-    fn record_anew(&mut self) {
-        match &mut self.course {
-            Course::Ahead => {}
-            Course::Run(run) => run.record_anew(&self.scene),
-            Course::Exchange(now) => now.record_anew(&self.scene),
-        }
-    }
-
-    /// The scene is not what the run has integrated so far.
-    fn changed(&mut self) {
-        if let Course::Run(run) = &mut self.course {
-            run.scene_changed();
-        }
     }
 }
 
@@ -383,28 +234,4 @@ fn check_time(what: &str, time: f64) -> Result<(), Fault> {
     } else {
         format!("the {what} {number} is not a finite number")
     }))
-}
-
-/// Takes the host's time over, which is ahead of ours by `deviation`. What was set since the last
-/// step (derivatives: bit k for input k) was set for the host's communication point; the other
-/// inputs go on as the functions of time that they are.
-#[cold]
-fn set_clock<M: Model>(
-    run: &mut Run<M>,
-    scene: &mut M::Scene,
-    set: u64,
-    current: f64,
-    deviation: f64,
-) {
-    if M::inputs_since(scene) == run.time() {
-        for (reference, variable) in M::VARIABLES.iter().enumerate() {
-            if let Access::Input { of, .. } = variable.access
-                && set & (1 << reference) == 0
-            {
-                of(scene).shift(deviation);
-            }
-        }
-        M::begin_inputs(scene, Double::new(current));
-    }
-    run.set_clock(scene, current, deviation);
 }

@@ -3,7 +3,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Event, Fault};
+use super::phase::Phase;
+use super::{Event, Fault, Instance, Severity, Simulation};
+use crate::model::variables::Access;
 use crate::model::{AtLimit, Collapse, Model, Motion};
 use crate::shortest::Shortest;
 use crate::solver::double::Double;
@@ -63,7 +65,7 @@ impl<M: Model> Run<M> {
     }
 
     /// Whether the numbers fit together as those of a motion of the scene.
-    pub(super) fn is_sound(&self, scene: &M::Scene, tolerance: f64) -> bool {
+    pub(super) fn is_valid(&self, scene: &M::Scene, tolerance: f64) -> bool {
         let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
         self.clock.is_finite()
             && self.motion.is_valid(scene, tolerance)
@@ -149,7 +151,7 @@ impl<M: Model> Run<M> {
             return Ok(());
         }
         Err(Fault::error(format!(
-            "the step of {} from {} goes beyond the stop time {} given to fmi2SetupExperiment",
+            "the step of {} from {} goes beyond the stop time {} of the experiment",
             Shortest(step),
             Shortest(current),
             Shortest(stop)
@@ -251,6 +253,64 @@ impl<M: Model> Run<M> {
             }
         }
     }
+}
+
+impl<M: Model> Instance<M> {
+    /// Moves the actuator by one communication step. Returns an event where the
+    /// actuator has collapsed in it.
+    ///
+    /// # Errors
+    /// Error for a step that cannot be meant, with nothing changed; Discard
+    /// where the step ends early, at [`Instance::last_successful_time`].
+    pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
+        let Simulation::Run(run) = &mut self.simulation else {
+            return Err(Fault::error("the initialization has not been ended".into()));
+        };
+        let stop_time = self.experiment.stop_time;
+        let outcome = run
+            .check_step(current, step, stop_time)
+            .and_then(|deviation| {
+                if deviation != 0.0 {
+                    follow_clock(
+                        run,
+                        &mut self.scene,
+                        self.fresh_derivatives,
+                        current,
+                        deviation,
+                    );
+                }
+                self.fresh_derivatives = 0;
+                run.step(&self.scene, current, step)
+            });
+        if matches!(&outcome, Err(fault) if fault.severity == Severity::Discard) && !run.was_cut() {
+            self.phase = Phase::StepFailed;
+        }
+        outcome
+    }
+}
+
+/// Takes the host's time over, which is ahead of ours by `deviation`. What was set since the last
+/// step (derivatives: bit k for input k) was set for the host's communication point; the other
+/// inputs go on as the functions of time that they are.
+#[cold]
+fn follow_clock<M: Model>(
+    run: &mut Run<M>,
+    scene: &mut M::Scene,
+    set: u64,
+    current: f64,
+    deviation: f64,
+) {
+    if M::inputs_since(scene) == run.time() {
+        for (reference, variable) in M::VARIABLES.iter().enumerate() {
+            if let Access::Input { of, .. } = variable.access
+                && set & (1 << reference) == 0
+            {
+                of(scene).shift(deviation);
+            }
+        }
+        M::begin_inputs(scene, Double::new(current));
+    }
+    run.set_clock(scene, current, deviation);
 }
 
 #[cold]

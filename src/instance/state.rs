@@ -5,12 +5,14 @@
 //!
 //! Whatever the bytes, restoring them gives an error, or an instance that answers
 //! every call as any other does. Its numbers fit together: settings inside their
-//! limits, a phase that goes with the course, and a motion whose pieces join, with
+//! limits, a phase that goes with how far the simulation is, and a motion whose steps join, with
 //! the present in one of them and between the limits of the stretch. That the
-//! pieces solve the equation of motion is not checked: bytes forged with care move
+//! steps solve the equation of motion is not checked: bytes forged with care move
 //! the actuator as they say, until an input or a parameter changes.
 
-use super::{Course, Experiment, Fault, Instance, Interface, Phase, TOLERANCE_RANGE, check_time};
+use super::{
+    Experiment, Fault, Instance, Interface, Phase, Simulation, TOLERANCE_RANGE, check_time,
+};
 use crate::model::Model;
 use crate::model::variables::Access;
 
@@ -34,17 +36,14 @@ impl<M: Model> Instance<M> {
     /// Error where the bytes are none of [`Instance::save`], or an instance of
     /// another kind of FMU.
     pub fn saved(&self, bytes: &[u8]) -> Result<Instance<M>, Fault> {
-        let damaged = |why: &str| {
-            Fault::error(format!(
-                "the state is damaged ({why}); save it again with fmi2GetFMUstate"
-            ))
-        };
+        let damaged =
+            |why: &str| Fault::error(format!("the state is damaged ({why}); save it again"));
         let (saved, rest) = postcard::take_from_bytes::<Instance<M>>(bytes)
             .map_err(|error| damaged(&error.to_string()))?;
         if !rest.is_empty() {
             return Err(damaged("it is too long"));
         }
-        saved.check_soundness().map_err(|why| damaged(&why))?;
+        saved.check_validity().map_err(|why| damaged(&why))?;
         if saved.interface != self.interface {
             return Err(Fault::error(
                 "the state is of an instance for another kind of FMU; co-simulation and model \
@@ -66,7 +65,7 @@ impl<M: Model> Instance<M> {
 
     /// Checks that the numbers of an instance read from bytes fit together (see the
     /// head of this file).
-    fn check_soundness(&self) -> Result<(), String> {
+    fn check_validity(&self) -> Result<(), String> {
         for variable in M::VARIABLES {
             if let Access::Setting { get, .. } = variable.access {
                 variable.check(get(&self.scene))?;
@@ -75,17 +74,17 @@ impl<M: Model> Instance<M> {
         if !M::inputs_are_finite(&self.scene) {
             return Err("an input is not a finite number".into());
         }
-        if !self.experiment.is_sound() {
+        if !self.experiment.is_valid() {
             return Err("times or tolerance are out of range".into());
         }
         let before = !self.phase.has_begun();
-        let matches_phase = match (&self.course, self.interface) {
-            (Course::Ahead, _) => before,
-            (Course::Run(_), Interface::CoSimulation) => matches!(
+        let matches_phase = match (&self.simulation, self.interface) {
+            (Simulation::NotBegun, _) => before,
+            (Simulation::Run(_), Interface::CoSimulation) => matches!(
                 self.phase,
                 Phase::StepComplete | Phase::StepFailed | Phase::Terminated
             ),
-            (Course::Exchange(_), Interface::ModelExchange) => matches!(
+            (Simulation::Exchange(_), Interface::ModelExchange) => matches!(
                 self.phase,
                 Phase::EventMode | Phase::ContinuousTime | Phase::Terminated
             ),
@@ -94,12 +93,12 @@ impl<M: Model> Instance<M> {
         if !matches_phase {
             return Err("phase and motion do not belong together".into());
         }
-        let sound = match &self.course {
-            Course::Ahead => true,
-            Course::Run(run) => run.is_sound(&self.scene, self.experiment.tolerance),
-            Course::Exchange(exchange) => exchange.is_sound(&self.scene),
+        let valid = match &self.simulation {
+            Simulation::NotBegun => true,
+            Simulation::Run(run) => run.is_valid(&self.scene, self.experiment.tolerance),
+            Simulation::Exchange(exchange) => exchange.is_valid(&self.scene),
         };
-        if !sound {
+        if !valid {
             return Err("its numbers are not those of a motion".into());
         }
         Ok(())
@@ -107,7 +106,7 @@ impl<M: Model> Instance<M> {
 }
 
 impl Experiment {
-    fn is_sound(&self) -> bool {
+    fn is_valid(&self) -> bool {
         let [smallest, largest] = TOLERANCE_RANGE;
         let stop = self.stop_time.unwrap_or(self.start_time);
         check_time("start time", self.start_time).is_ok()

@@ -2,22 +2,23 @@
 
 use super::derivatives::state_component;
 use super::phase::Phase;
-use super::{Course, Fault, Instance};
+use super::{Exchange, Fault, Instance, Simulation};
 use crate::actuator::drive::Polynomial;
 use crate::model::variables::{Access, Kind, Variability, Variable};
-use crate::model::{Model, View};
+use crate::model::{Model, Place, View};
 use crate::shortest::Shortest;
+use crate::solver::double::Double;
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Type {
-    /// `fmi2Real`.
+    /// A real number.
     Real,
-    /// `fmi2Integer`, also used for enumerations.
+    /// A whole number, also the number of an item of an enumeration.
     Integer,
-    /// `fmi2Boolean`.
+    /// True or false.
     Boolean,
-    /// `fmi2String`.
+    /// A text.
     String,
 }
 
@@ -88,6 +89,27 @@ const fn input_count<M: Model>() -> usize {
 }
 
 impl<M: Model> Instance<M> {
+    /// What can be read at present.
+    #[must_use]
+    pub fn view(&self) -> View<'_, M> {
+        let scene = &self.scene;
+        let (place, time, collapse) = match &self.simulation {
+            Simulation::Run(run) => (Place::On(run.motion()), run.time(), run.collapse()),
+            Simulation::Exchange(now) => (now.place(), &now.time, now.visible_collapse(scene)),
+            Simulation::NotBegun => {
+                // The drive counts from the start time.
+                let time = M::inputs_since(scene);
+                (Exchange::new(scene, *time).place(), time, None)
+            }
+        };
+        View {
+            scene,
+            place,
+            time,
+            collapse,
+        }
+    }
+
     /// Reads the variables of type `wanted` with these value references, each
     /// passed to `store` with its place. Booleans are 0 or 1, enumerations
     /// their item's number.
@@ -132,7 +154,7 @@ impl<M: Model> Instance<M> {
     /// not, nothing is stored, and [`Instance::get`] is to be called.
     #[inline]
     pub fn get_stored(&self, reference: u32, value: &mut f64) -> bool {
-        let Course::Run(run) = &self.course else {
+        let Simulation::Run(run) = &self.simulation else {
             return false;
         };
         let Some(mut state) = run.stored_state() else {
@@ -254,7 +276,7 @@ impl<M: Model> Instance<M> {
                     changed
                 }
                 Access::Result { .. } => {
-                    if let Course::Exchange(now) = &mut self.course
+                    if let Simulation::Exchange(now) = &mut self.simulation
                         && let Some(component) = state_component::<M>(&mut now.state, reference)
                     {
                         *component = value;
@@ -303,6 +325,38 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
+    /// Counts the time of the drive from the present communication point on.
+    pub(super) fn bring_drive_up_to_date(&mut self) {
+        if let Some(time) = self.now() {
+            M::rebase_inputs(&mut self.scene, time);
+        }
+    }
+
+    /// The present communication point; none before the motion has begun.
+    fn now(&self) -> Option<Double> {
+        match &self.simulation {
+            Simulation::NotBegun => None,
+            Simulation::Run(run) => Some(*run.time()),
+            Simulation::Exchange(now) => Some(now.time),
+        }
+    }
+
+    /// Starts what is recorded anew, at the present.
+    fn record_anew(&mut self) {
+        match &mut self.simulation {
+            Simulation::NotBegun => {}
+            Simulation::Run(run) => run.record_anew(&self.scene),
+            Simulation::Exchange(now) => now.record_anew(&self.scene),
+        }
+    }
+
+    /// The scene is not what the run has integrated so far.
+    pub(super) fn changed(&mut self) {
+        if let Simulation::Run(run) = &mut self.simulation {
+            run.scene_changed();
+        }
+    }
+
     /// Whether this is a state that the host integrates, and may set at present.
     #[inline]
     fn is_settable_state(&self, reference: u32) -> bool {
@@ -329,7 +383,9 @@ fn not_settable<M: Model>(variable: &Variable<M>) -> Fault {
     Fault::error(match variable.access {
         Access::Result { .. } => format!("{name} is a result of the model and cannot be set"),
         _ => {
-            format!("{name} is fixed after initialization; set it before, or call fmi2Reset first")
+            format!(
+                "{name} is fixed after initialization; set it before, or reset the instance first"
+            )
         }
     })
 }

@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 use self::variables::{Alias, Variable};
 use crate::solver::State;
 use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limits;
 use crate::solver::number::Number;
@@ -95,10 +96,10 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// Counts the time of the inputs from `time` on; the inputs stay the same functions of time.
     fn rebase_inputs(scene: &mut Self::Scene, time: Double);
 
-    /// Makes `time` the moment from which the time of the inputs counts; their numbers are kept.
+    /// Makes the time of the inputs count from `time`; their numbers are kept.
     fn begin_inputs(scene: &mut Self::Scene, time: Double);
 
-    /// The moment from which the time of the inputs counts.
+    /// The time from which that of the inputs counts.
     fn inputs_since(scene: &Self::Scene) -> &Double;
 
     /// Whether what drives the motion depends on time.
@@ -141,6 +142,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// Whether the extremes of the position are recorded.
     fn records_extremes(scene: &Self::Scene) -> bool;
+
+    /// The extremes of the position since their recording began, where they are recorded.
+    fn extremes(view: &View<Self>) -> Option<Extremes>;
 
     /// The number of the window over which something is recorded; a change of it starts the
     /// records anew.
@@ -274,7 +278,7 @@ impl AtLimit {
     }
 }
 
-/// The moment at which a motion reached a limit.
+/// The limit that a motion has reached, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Collapse<L> {
     /// The limit.

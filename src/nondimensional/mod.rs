@@ -11,16 +11,17 @@ use serde::{Deserialize, Serialize};
 
 use crate::description::guid;
 use crate::model::variables::{self, Alias, Variable};
-use crate::model::{AtLimit, Direction, Experiment, Model, Motion, View};
+use crate::model::{AtLimit, Direction, Experiment, Model, View};
 use crate::nondimensional::scene::Scene;
 use crate::nondimensional::view::{Quantities, Sample};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
 use crate::solver::number::Number;
-use crate::solver::trajectory::{Failure, Progress, Trajectory};
+use crate::solver::trajectory::Trajectory;
 
 /// The marker of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -169,6 +170,10 @@ impl Model for Nondimensional {
         scene.records_extremes()
     }
 
+    fn extremes(view: &View<Nondimensional>) -> Option<Extremes> {
+        view.extremes()
+    }
+
     #[inline]
     fn window(scene: &Scene) -> f64 {
         scene.extremes_window
@@ -218,50 +223,5 @@ impl Scene {
     #[must_use]
     pub fn at_start() -> Scene {
         <Nondimensional as Model>::at_start()
-    }
-}
-
-impl Motion<Nondimensional> for Trajectory {
-    fn begin(scene: &Scene, _time: &Double, tolerance: f64) -> Trajectory {
-        let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
-        if scene.records_extremes() {
-            trajectory.recording_extremes()
-        } else {
-            trajectory
-        }
-    }
-
-    #[inline]
-    fn advance(
-        &mut self,
-        scene: &Scene,
-        clock: &mut Double,
-        step: f64,
-    ) -> Result<Progress, Failure> {
-        Trajectory::advance(self, scene, clock, step)
-    }
-
-    #[inline]
-    fn restart(&mut self) {
-        Trajectory::restart(self);
-    }
-
-    fn record_anew(&mut self, scene: &Scene) {
-        self.record_extremes_anew(scene.records_extremes());
-    }
-
-    #[inline]
-    fn stored_state(&self) -> Option<State> {
-        Trajectory::stored_state(self)
-    }
-
-    fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {
-        Trajectory::is_valid(self)
-            && self.keeps_to(scene.limits, tolerance)
-            && self.extremes().is_some() == scene.records_extremes()
-    }
-
-    fn whereabouts(&self) -> String {
-        format!("stretch {}", Shortest(self.position()))
     }
 }

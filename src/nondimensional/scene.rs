@@ -1,13 +1,17 @@
-//! A scene: everything that a host sets before and between communication steps.
+//! A scene: everything that a host sets before and between communication steps; and the motion
+//! that follows from it.
 
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::drive::{Harmonic, Polynomial};
 use crate::actuator::motion::LocalMotion;
 use crate::actuator::{Coefficients, Drive, Motion, Parameters};
-use crate::model::AtLimit;
+use crate::model::{self, AtLimit};
+use crate::nondimensional::Nondimensional;
+use crate::shortest::Shortest;
 use crate::solver::double::Double;
 use crate::solver::limits::Limits;
+use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, State};
 
 /// One scenario: actuator, start, limits and drive.
@@ -110,5 +114,50 @@ impl Equation for Scene {
     #[inline]
     fn is_time_reversible(&self) -> bool {
         true
+    }
+}
+
+impl model::Motion<Nondimensional> for Trajectory {
+    fn begin(scene: &Scene, _time: &Double, tolerance: f64) -> Trajectory {
+        let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
+        if scene.records_extremes() {
+            trajectory.recording_extremes()
+        } else {
+            trajectory
+        }
+    }
+
+    #[inline]
+    fn advance(
+        &mut self,
+        scene: &Scene,
+        clock: &mut Double,
+        step: f64,
+    ) -> Result<Progress, Failure> {
+        Trajectory::advance(self, scene, clock, step)
+    }
+
+    #[inline]
+    fn restart(&mut self) {
+        Trajectory::restart(self);
+    }
+
+    fn record_anew(&mut self, scene: &Scene) {
+        self.record_extremes_anew(scene.records_extremes());
+    }
+
+    #[inline]
+    fn stored_state(&self) -> Option<State> {
+        Trajectory::stored_state(self)
+    }
+
+    fn is_valid(&self, scene: &Scene, tolerance: f64) -> bool {
+        Trajectory::is_valid(self)
+            && self.keeps_to(scene.limits, tolerance)
+            && self.extremes().is_some() == scene.records_extremes()
+    }
+
+    fn whereabouts(&self) -> String {
+        format!("stretch {}", Shortest(self.position()))
     }
 }

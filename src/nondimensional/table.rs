@@ -3,7 +3,7 @@
 use super::Nondimensional;
 use crate::model::AtLimit;
 use crate::model::variables::rows::{
-    UNDECLARED, depends, formula, positive, real, unlimited, value,
+    UNDECLARED, depends, extremes, formula, positive, real, unlimited, value,
 };
 use crate::model::variables::{
     Alias, Causality, Derivatives, Enumeration, Kind, Variability, Variable, checked, units,
@@ -27,6 +27,8 @@ pub static ON_PULL_IN: Enumeration = Enumeration {
 };
 
 type Row = Variable<Nondimensional>;
+
+const EXTREMES: [Row; 4] = extremes();
 
 const VOLTS: &str = "it is nondimensional: volts*sqrt(eps/mu)/H";
 const FORCE: &str = "it is nondimensional: force/(mu*H*L)";
@@ -338,41 +340,10 @@ pub static VARIABLES: [Row; COUNT] = checked([
         |scene| f64::from(u8::from(scene.record_extremes)),
         |scene, value| scene.record_extremes = value != 0.0,
     ),
-    Row::result(
-        "lambda_lowest",
-        "smallest lambda since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| e.lowest)),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda_highest",
-        "largest lambda since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| e.highest)),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda3_lowest",
-        "smallest lambda3 since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| {
-            view.extremes()
-                .map_or(0.0, |e| 1.0 / (e.highest * e.highest))
-        }),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda3_highest",
-        "largest lambda3 since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest))),
-        UNDECLARED,
-    ),
+    EXTREMES[0],
+    EXTREMES[1],
+    EXTREMES[2],
+    EXTREMES[3],
     Row::result(
         "collapsed",
         "pulled_in as a number: 1 once the stretch has reached lambda_min or lambda_max, 0 before",

@@ -11,7 +11,7 @@ use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
 use crate::solver::double::Double;
 
-/// The energies exchanged, the moment of breakdown, and where the host's last step ended.
+/// The energies exchanged, the time of breakdown, and where the host's last step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SiAccount {
     /// Energies lost and supplied since the start in J, where they are recorded.

@@ -146,7 +146,7 @@ impl Course {
     }
 
     /// Whether its numbers fit together and keep to the scene.
-    pub fn is_sound(&self, scene: &SiScene, tolerance: f64) -> bool {
+    pub fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
         either!(self, trajectory => trajectory.is_valid() && trajectory.keeps_to(scene.limits, tolerance))
     }
 }

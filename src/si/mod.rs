@@ -26,6 +26,7 @@ use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::double::Double;
+use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
 use crate::solver::number::Number;
@@ -222,6 +223,10 @@ impl Model for Si {
 
     fn records_extremes(scene: &SiScene) -> bool {
         scene.records_extremes()
+    }
+
+    fn extremes(view: &View<Si>) -> Option<Extremes> {
+        view.extremes()
     }
 
     fn window(scene: &SiScene) -> f64 {

@@ -275,7 +275,7 @@ impl Motion<Si> for SiMotion {
     }
 
     fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
-        let sound = self.course.is_sound(scene, tolerance);
+        let valid = self.course.is_valid(scene, tolerance);
         let positive = |number: f64| number > 0.0 && number.is_finite();
         let Scales {
             time,
@@ -288,7 +288,7 @@ impl Motion<Si> for SiMotion {
             length,
             field,
         } = self.scales;
-        sound
+        valid
             && self.tolerance == tolerance
             && self.lead.is_finite()
             && self.motion.is_plain() == self.course.is_plain()

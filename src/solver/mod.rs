@@ -52,7 +52,7 @@ pub struct State {
 
 /// An equation of motion x'' = f(t, x, x').
 pub trait Equation {
-    /// The equation seen from a moment, with what depends on that moment only
+    /// The equation seen from a time, with what depends on that time only
     /// worked out.
     type Local<'a>: LocalEquation
     where
@@ -93,7 +93,7 @@ pub struct Sensitivity {
 
 /// An [`Equation`] with its origin of time moved to the begin of a substep.
 pub trait LocalEquation {
-    /// What f needs to know of the time, at one moment or at lanes of moments.
+    /// What f needs to know of the time, at one time or at lanes of times.
     type Load<N: Number>: Copy;
 
     /// The load at `offset` after the origin of time.

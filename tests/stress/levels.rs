@@ -107,7 +107,7 @@ fn no_level_follows_the_floating_point_environment_of_the_host() {
             let _ours = FloatEnvironment::entered();
             call()
         };
-        // SAFETY: as above.
+        // SAFETY: reads MXCSR and puts back what was there before.
         unsafe {
             std::arch::asm!("stmxcsr [{}]", in(reg) &mut after);
             std::arch::asm!("ldmxcsr [{}]", in(reg) &before);

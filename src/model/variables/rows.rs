@@ -47,6 +47,48 @@ pub const fn value<M: Model>(get: fn(&View<M>) -> f64) -> Formula<M> {
     (get, None)
 }
 
+/// The lowest and the highest stretch since their recording began, and those of the thickness
+/// stretch.
+pub const fn extremes<M: Model>() -> [Variable<M>; 4] {
+    const fn row<M: Model>(
+        name: &'static str,
+        description: &'static str,
+        get: fn(&View<M>) -> f64,
+    ) -> Variable<M> {
+        let kind = real(0.0, 1e6, 1.0);
+        Variable::result(
+            name,
+            description,
+            Causality::Local,
+            kind,
+            value(get),
+            UNDECLARED,
+        )
+    }
+    [
+        row(
+            "lambda_lowest",
+            "smallest lambda since the recording began; 0 where extremes are not recorded",
+            |view| M::extremes(view).map_or(0.0, |e| e.lowest),
+        ),
+        row(
+            "lambda_highest",
+            "largest lambda since the recording began; 0 where extremes are not recorded",
+            |view| M::extremes(view).map_or(0.0, |e| e.highest),
+        ),
+        row(
+            "lambda3_lowest",
+            "smallest lambda3 since the recording began; 0 where extremes are not recorded",
+            |view| M::extremes(view).map_or(0.0, |e| 1.0 / (e.highest * e.highest)),
+        ),
+        row(
+            "lambda3_highest",
+            "largest lambda3 since the recording began; 0 where extremes are not recorded",
+            |view| M::extremes(view).map_or(0.0, |e| 1.0 / (e.lowest * e.lowest)),
+        ),
+    ]
+}
+
 /// On which variables a result depends, during the motion and at the start.
 pub const fn depends(
     now: &'static [&'static str],

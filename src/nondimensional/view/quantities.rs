@@ -45,7 +45,7 @@ pub trait Quantities<N: Number> {
     }
 }
 
-/// The actuator at one moment, as numbers that carry their derivatives along.
+/// The actuator at one time, as numbers that carry their derivatives along.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<N> {
     stretch: N,
@@ -73,8 +73,7 @@ impl<N: Number> Quantities<N> for Sample<N> {
 }
 
 impl Sample<Dual> {
-    /// The moment at which a scene is in this state, `held` at a limit or not,
-    /// as it changes in a direction.
+    /// A scene in this state, `held` at a limit or not, as it changes in a direction.
     pub(crate) fn along(
         scene: &Scene,
         time: Double,

@@ -2,7 +2,9 @@
 
 use super::Row;
 use crate::model::variables::Causality::{Local, Output};
-use crate::model::variables::rows::{UNDECLARED, depends, positive, real, unlimited, value};
+use crate::model::variables::rows::{
+    UNDECLARED, depends, extremes, positive, real, unlimited, value,
+};
 use crate::model::variables::{Derivatives, Kind, units};
 use crate::si::Si;
 use crate::si::thresholds::Threshold;
@@ -18,6 +20,8 @@ const AT_EVENTS: Option<Derivatives<Si>> = Some(Derivatives {
     along: |sample| sample.stretch().same(0.0),
     from_now_on: |sample| sample.stretch().same(0.0),
 });
+
+const EXTREMES: [Row; 4] = extremes();
 
 /// The results that are only read.
 pub(super) const VALUES: [Row; 34] = [
@@ -252,41 +256,10 @@ pub(super) const VALUES: [Row; 34] = [
         UNDECLARED,
     )
     .in_unit(&units::SECOND),
-    Row::result(
-        "lambda_lowest",
-        "smallest lambda since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| e.lowest)),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda_highest",
-        "largest lambda since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| e.highest)),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda3_lowest",
-        "smallest lambda3 since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| {
-            view.extremes()
-                .map_or(0.0, |e| 1.0 / (e.highest * e.highest))
-        }),
-        UNDECLARED,
-    ),
-    Row::result(
-        "lambda3_highest",
-        "largest lambda3 since the recording began; 0 where extremes are not recorded",
-        Local,
-        real(0.0, 1e6, 1.0),
-        value(|view| view.extremes().map_or(0.0, |e| 1.0 / (e.lowest * e.lowest))),
-        UNDECLARED,
-    ),
+    EXTREMES[0],
+    EXTREMES[1],
+    EXTREMES[2],
+    EXTREMES[3],
     Row::result(
         "pulled_in",
         "whether the stretch has reached lambda_min or lambda_max; the output collapsed is the same as a number",

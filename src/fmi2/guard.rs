@@ -1,126 +1,22 @@
-//! What stands behind an `fmi2Component`: an instance and its host; and the
-//! guard through which every call goes.
+//! The way from C into an instance: the guard through which every call goes, and the host's
+//! pointers as slices and texts.
 
-use std::ffi::{CStr, CString};
+use std::ffi::CStr;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use fmi::fmi2::binding::{
-    fmi2CallbackFunctions, fmi2Component, fmi2Status, fmi2Status_fmi2Discard, fmi2Status_fmi2Error,
-    fmi2Status_fmi2Fatal, fmi2Status_fmi2OK, fmi2Status_fmi2Warning,
-};
+use fmi::fmi2::binding::{fmi2Component, fmi2Status, fmi2Status_fmi2Error, fmi2Status_fmi2OK};
+use libc::c_char;
 
+use super::calls::Call;
 use super::float_environment::FloatEnvironment;
-use crate::description::LOG_CATEGORIES;
-use crate::instance::{Call, Event, Fault, Instance, Severity};
+use super::host::Host;
+use crate::instance::{Event, Fault, Instance, Severity};
 use crate::model::Model;
 
-/// Log categories by their place in [`LOG_CATEGORIES`].
-const EVENTS: usize = 0;
-const WARNINGS: usize = 1;
-const ERRORS: usize = 2;
-
-/// An instance with its host.
+/// What stands behind an `fmi2Component`: an instance with its host.
 pub struct Component<M: Model> {
     pub instance: Instance<M>,
     pub host: Host,
-}
-
-/// The host's side: who is told what.
-pub struct Host {
-    /// Copied by value: hosts may free or reuse the structure that they passed.
-    callbacks: fmi2CallbackFunctions,
-    name: CString,
-    enabled: [bool; LOG_CATEGORIES.len()],
-}
-
-impl Host {
-    pub fn new(callbacks: fmi2CallbackFunctions, name: &CStr, logging_on: bool) -> Host {
-        let mut enabled = [true; LOG_CATEGORIES.len()];
-        enabled[EVENTS] = logging_on;
-        Host {
-            callbacks,
-            name: name.to_owned(),
-            enabled,
-        }
-    }
-
-    /// Switches categories on or off; none listed means all. Those that are
-    /// not listed are switched off when others are switched on.
-    pub fn set_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Fault> {
-        let mut enabled = if on && !categories.is_empty() {
-            [false; LOG_CATEGORIES.len()]
-        } else if categories.is_empty() {
-            [on; LOG_CATEGORIES.len()]
-        } else {
-            self.enabled
-        };
-        for wanted in categories {
-            let known = LOG_CATEGORIES
-                .iter()
-                .position(|(name, _)| name.as_bytes() == wanted.to_bytes());
-            let Some(place) = known else {
-                let names = LOG_CATEGORIES.map(|(name, _)| name).join(", ");
-                return Err(Fault::error(format!(
-                    "there is no log category of that name; there are {names}"
-                )));
-            };
-            enabled[place] = on;
-        }
-        self.enabled = enabled;
-        Ok(())
-    }
-
-    fn log(&self, status: fmi2Status, category: usize, text: &str) {
-        let Some(logger) = self.callbacks.logger else {
-            return;
-        };
-        if !self.enabled[category] {
-            return;
-        }
-        // The host takes the text for a printf format.
-        let text: String = text.chars().filter(|&c| c != '%' && c != '\0').collect();
-        let (Ok(category), Ok(text)) =
-            (CString::new(LOG_CATEGORIES[category].0), CString::new(text))
-        else {
-            return;
-        };
-        // SAFETY: the logger is a function of the host with this signature
-        // (FMI 2.0, section 2.1.5), all texts end with NUL and outlive the
-        // call, and the format has no conversion that would ask for arguments.
-        unsafe {
-            logger(
-                self.callbacks.componentEnvironment,
-                self.name.as_ptr(),
-                status,
-                category.as_ptr(),
-                text.as_ptr(),
-            );
-        }
-    }
-
-    /// Tells the host why a call was not done, and gives its status.
-    #[cold]
-    pub fn refuse(&self, function: &str, fault: Fault) -> fmi2Status {
-        let (status, category) = match fault.severity {
-            Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
-            Severity::Error => (fmi2Status_fmi2Error, ERRORS),
-            Severity::Fatal => (fmi2Status_fmi2Fatal, ERRORS),
-        };
-        self.log(status, category, &format!("{function}: {}", fault.text));
-        status
-    }
-
-    /// Tells the host of something in a call that was done, and gives its status.
-    #[cold]
-    fn announce(&self, function: &str, event: Event) -> fmi2Status {
-        let (status, category) = if event.warning {
-            (fmi2Status_fmi2Warning, WARNINGS)
-        } else {
-            (fmi2Status_fmi2OK, EVENTS)
-        };
-        self.log(status, category, &format!("{function}: {}", event.text));
-        status
-    }
 }
 
 /// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
@@ -200,11 +96,11 @@ pub fn guarded_in_place<M: Model>(
     call: Call,
     body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
 ) -> fmi2Status {
-    // SAFETY: see `behind`.
+    // SAFETY: the pointer is the host's, as it came: null, or from `fmi2Instantiate`.
     let Some(component) = (unsafe { behind::<M>(component) }) else {
         return fmi2Status_fmi2Error;
     };
-    if let Err(fault) = component.instance.check(call) {
+    if let Err(fault) = call.check(&component.instance) {
         return component.host.refuse(function, fault);
     }
     match contained(|| computing(|| body(component))) {
@@ -228,9 +124,11 @@ pub fn done_at_once<M: Model>(
     call: Call,
     at_once: impl FnOnce(&mut Instance<M>) -> bool,
 ) -> bool {
-    // SAFETY: see `behind`.
+    // SAFETY: the pointer is the host's, as it came: null, or from `fmi2Instantiate`.
     match unsafe { behind::<M>(component) } {
-        Some(component) => component.instance.permits(call) && at_once(&mut component.instance),
+        Some(component) => {
+            call.is_permitted(&component.instance) && at_once(&mut component.instance)
+        }
         None => false,
     }
 }
@@ -241,8 +139,88 @@ pub fn done_at_once<M: Model>(
 /// One that is not null comes from `fmi2Instantiate`, was not freed, and is used by one call at
 /// a time: the host owes it to us (FMI 2.0, sections 2.1.6 and 2.1.7).
 unsafe fn behind<'a, M: Model>(component: fmi2Component) -> Option<&'a mut Component<M>> {
-    // SAFETY: the caller's promise.
+    // SAFETY: null, or a live component that no other call uses, as the caller promises.
     unsafe { component.cast::<Component<M>>().as_mut() }
+}
+
+// ---- The host's pointers; a null one is a fault ----
+
+#[cold]
+fn null(what: &str) -> Fault {
+    Fault::error(format!("{what} is a null pointer"))
+}
+
+/// `count` values to read; nothing for a null pointer.
+///
+/// # Safety
+/// `values` must be null or point to `count` values that live during the call.
+#[inline]
+pub unsafe fn readable<'a, T>(values: *const T, count: usize) -> Option<&'a [T]> {
+    match (count, values.is_null()) {
+        (0, _) => Some(&[]),
+        (_, true) => None,
+        // SAFETY: not null, and `count` values that live during the call, as the caller promises.
+        _ => Some(unsafe { std::slice::from_raw_parts(values, count) }),
+    }
+}
+
+/// `count` values to write; nothing for a null pointer.
+///
+/// # Safety
+/// `values` must be null or point to `count` values that live during the call
+/// and that nobody else uses.
+#[inline]
+pub unsafe fn writable<'a, T>(values: *mut T, count: usize) -> Option<&'a mut [T]> {
+    match (count, values.is_null()) {
+        (0, _) => Some(&mut []),
+        (_, true) => None,
+        // SAFETY: not null, and `count` values that live during the call, as the caller promises.
+        _ => Some(unsafe { std::slice::from_raw_parts_mut(values, count) }),
+    }
+}
+
+/// `count` values to read; a null pointer is a fault.
+///
+/// # Safety
+/// As for [`readable`].
+pub unsafe fn slice<'a, T>(values: *const T, count: usize, what: &str) -> Result<&'a [T], Fault> {
+    // SAFETY: null, or `count` values that live during the call, as the caller promises.
+    unsafe { readable(values, count) }.ok_or_else(|| null(what))
+}
+
+/// `count` values to write; a null pointer is a fault.
+///
+/// # Safety
+/// As for [`writable`].
+pub unsafe fn slice_mut<'a, T>(
+    values: *mut T,
+    count: usize,
+    what: &str,
+) -> Result<&'a mut [T], Fault> {
+    // SAFETY: null, or `count` values that nobody else uses, as the caller promises.
+    unsafe { writable(values, count) }.ok_or_else(|| null(what))
+}
+
+/// One value to write.
+///
+/// # Safety
+/// As for [`writable`] with one value.
+pub unsafe fn place<'a, T>(value: *mut T, what: &str) -> Result<&'a mut T, Fault> {
+    // SAFETY: null, or one value that nobody else uses, as the caller promises.
+    unsafe { value.as_mut() }.ok_or_else(|| null(what))
+}
+
+/// A text.
+///
+/// # Safety
+/// `text` must be null or point to characters that end with NUL and live
+/// during the call.
+pub unsafe fn text<'a>(text: *const c_char, what: &str) -> Result<&'a CStr, Fault> {
+    if text.is_null() {
+        return Err(null(what));
+    }
+    // SAFETY: not null, and characters that end with NUL, as the caller promises.
+    Ok(unsafe { CStr::from_ptr(text) })
 }
 
 #[cfg(test)]
