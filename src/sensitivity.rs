@@ -10,11 +10,11 @@ use crate::actuator::drive::Polynomial;
 use crate::actuator::motion::{self, Load};
 use crate::actuator::{Drive, Parameters};
 use crate::nondimensional::scene::Scene;
+use crate::solver::dense_output::Segment;
 use crate::solver::double::Double;
 use crate::solver::jet::Dual;
 use crate::solver::limits::Limit;
 use crate::solver::linearized::{Linearized, Stages, offsets};
-use crate::solver::segment::Segment;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, LocalEquation, State};
 

@@ -5,8 +5,8 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use super::State;
+use super::dense_output::{PARTS, Segment};
 use super::roots::crossing;
-use super::segment::{PARTS, Segment};
 
 /// The range of positions inside which the motion is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -11,7 +11,7 @@ use nalgebra::{Const, LU, SMatrix, SVector};
 
 use super::State;
 use super::collocation::Series;
-use super::segment::{PAIRS, Segment};
+use super::dense_output::{PAIRS, Segment};
 use super::tables::GAUSS_16;
 
 /// Number of stages.

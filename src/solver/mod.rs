@@ -2,12 +2,13 @@
 //!
 //! * [`trajectory`]: a motion of this equation; [`coupled`]: one with first-order states and
 //!   dissipation; [`ensemble`]: many motions at once, one in each lane;
-//! * [`integrator`]: what the first two have in common: the clock, dense output, the loop over steps;
+//! * [`integrator`]: what the first two have in common: the steps that are kept, events, the
+//!   loop over steps; [`position_origin`]: where positions are counted from;
 //! * [`collocation`]: one step of Gauss collocation with dense output, its nodes in SIMD [`lanes`];
 //! * `endpoint`: steps of which only the end is asked for;
 //! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;
-//! * [`segment`]: the polynomial that a step leaves behind;
+//! * [`dense_output`]: the polynomials that steps leave behind;
 //! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
 //! * [`linearized`]: the motion beside a motion;
 //! * [`roots`]: zeros and minima; [`sine`]: that of lanes;
@@ -15,6 +16,7 @@
 
 pub mod collocation;
 pub mod coupled;
+pub mod dense_output;
 pub mod double;
 mod endpoint;
 pub mod ensemble;
@@ -28,8 +30,8 @@ pub mod linearized;
 pub mod number;
 pub mod orbit;
 mod outcome;
+pub mod position_origin;
 pub mod roots;
-pub mod segment;
 mod short_step;
 pub mod sine;
 pub mod step_control;

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::dense_output::VALIDATION_TOLERANCE;
 use super::double::Double;
-use super::segment::VALIDATION_TOLERANCE;
 
 /// The motion between two turning points of an autonomous, time-reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{End, Way};
 use crate::solver::collocation::{Guess, Series, Substep, Task, solve_by_8, solve_by_16};
+use crate::solver::dense_output::PAIRS as MOST_PAIRS;
 use crate::solver::double::Double;
 use crate::solver::iteration::Diverged;
-use crate::solver::segment::PAIRS as MOST_PAIRS;
 use crate::solver::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use crate::solver::{Equation, LocalEquation};
 

@@ -12,74 +12,20 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::State;
+use super::dense_output::{History, KeptStep, Segment};
 use super::double::Double;
 use super::extremes::Extremes;
-use super::limits::{Limit, Limits};
+use super::limits::Limits;
 use super::orbit::Orbit;
 use super::outcome::{Failure, Progress};
-use super::segment::Segment;
+use super::position_origin::PositionOrigin;
 use super::step_control::StepControl;
 
-mod evaluation;
-mod history;
+mod events;
 mod validation;
-
-pub use evaluation::Place;
-pub use history::{History, KeptStep};
 
 /// What rounding may leave of a step that has been made.
 const LAST_BITS: f64 = 1e-18;
-
-/// Where positions are counted from.
-pub trait PositionOrigin: Copy + Debug + PartialEq + Serialize + DeserializeOwned {
-    /// The position 0.
-    const ZERO: Self;
-
-    /// A position counted from 0.
-    fn absolute(self, position: f64) -> f64;
-
-    /// A position counted from here.
-    fn relative(self, position: f64) -> f64;
-
-    /// Whether it is finite.
-    fn is_finite(&self) -> bool;
-}
-
-/// Always 0.
-impl PositionOrigin for () {
-    const ZERO: () = ();
-
-    #[inline(always)]
-    fn absolute(self, position: f64) -> f64 {
-        position
-    }
-
-    #[inline(always)]
-    fn relative(self, position: f64) -> f64 {
-        position
-    }
-
-    fn is_finite(&self) -> bool {
-        true
-    }
-}
-
-/// A number that no step changes much.
-impl PositionOrigin for Double {
-    const ZERO: Double = Double::ZERO;
-
-    fn absolute(self, position: f64) -> f64 {
-        self.plus(position).value()
-    }
-
-    fn relative(self, position: f64) -> f64 {
-        -self.plus(-position).value()
-    }
-
-    fn is_finite(&self) -> bool {
-        Double::is_finite(self)
-    }
-}
 
 /// How the steps of a kind of equation are solved, and what it carries along.
 pub trait Method: Copy + Debug + Serialize + DeserializeOwned {
@@ -138,6 +84,16 @@ impl<L> Mode<L> {
             Mode::Dense { .. } | Mode::AtRest => None,
         }
     }
+}
+
+/// Where the present lies.
+pub enum Place<'a, O> {
+    /// At the start.
+    Start,
+    /// Inside a step, at this offset after its begin.
+    Inside(&'a KeptStep<O>, f64),
+    /// At the end of a step.
+    End(&'a KeptStep<O>),
 }
 
 /// A motion that is followed forward in time. It can be stored, and goes on bit for bit on
@@ -213,6 +169,56 @@ impl<M: Method> Integrator<M> {
     pub fn with_level(mut self, level: Level) -> Self {
         self.level = level;
         self
+    }
+
+    /// The present position, counted from 0.
+    #[must_use]
+    pub fn position(&self) -> f64 {
+        let (origin, position) = self.position_from_origin();
+        origin.absolute(position)
+    }
+
+    /// The present position, counted from the origin that is returned with it.
+    #[must_use]
+    pub fn position_from_origin(&self) -> (M::Origin, f64) {
+        match self.place() {
+            Place::Start => (self.position_origin, self.start.position),
+            Place::Inside(step, offset) => (step.origin, step.segment.position(offset)),
+            Place::End(step) => (step.origin, step.segment.end().position),
+        }
+    }
+
+    /// The present rate.
+    #[must_use]
+    pub fn rate(&self) -> f64 {
+        self.mode.direction()
+            * match self.place() {
+                Place::Start => self.start.rate,
+                Place::Inside(step, offset) => step.segment.rate(offset),
+                Place::End(step) => step.segment.end().rate,
+            }
+    }
+
+    /// The present position, counted from 0, and rate.
+    #[must_use]
+    pub fn state(&self) -> State {
+        State {
+            position: self.position(),
+            rate: self.rate(),
+        }
+    }
+
+    pub(super) fn place(&self) -> Place<'_, M::Origin> {
+        if self.history.is_empty() || self.now == Double::ZERO {
+            return Place::Start;
+        }
+        let step = &self.history.steps()[self.index];
+        let offset = self.now.since(step.begin);
+        if offset == step.segment.length() {
+            Place::End(step)
+        } else {
+            Place::Inside(step, offset)
+        }
     }
 
     pub(super) fn records_extremes(&self) -> bool {
@@ -394,25 +400,5 @@ impl<M: Method> Integrator<M> {
             segment,
         });
         shift
-    }
-
-    /// The limit that the motion first meets in the last step, and the offset at which it does.
-    /// `lowest` and `highest` hold the motion there.
-    pub(super) fn first_contact(&mut self, lowest: f64, highest: f64) -> Option<(Limit, f64)> {
-        let limits = self.limits;
-        let step = self.history.steps_mut().last_mut()?;
-        let limits = Limits {
-            lower: step.origin.relative(limits.lower),
-            upper: step.origin.relative(limits.upper),
-        };
-        limits.first_contact(&mut step.segment, lowest..=highest)
-    }
-
-    /// Notes that the motion stops at this offset after the begin of the last step.
-    pub(super) fn stop_in_last_step(&mut self, event: Option<(M::Event, f64)>) {
-        let begin = self.history.steps().last().map(|step| step.begin);
-        if let (Mode::Dense { stop, .. }, Some(begin)) = (&mut self.mode, begin) {
-            *stop = event.map(|(event, offset)| (event, begin.plus(offset)));
-        }
     }
 }

@@ -1,11 +1,12 @@
 //! Whether numbers fit together as those of a motion that has been followed.
 
-use super::{Integrator, Method, Mode, PositionOrigin};
+use super::{Integrator, Method, Mode};
+use crate::solver::dense_output::VALIDATION_TOLERANCE;
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
-use crate::solver::segment::VALIDATION_TOLERANCE;
+use crate::solver::position_origin::PositionOrigin;
 
 impl<M: Method> Integrator<M> {
     /// Whether the numbers fit together: to be checked where they do not come from this process.

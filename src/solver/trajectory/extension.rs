@@ -4,13 +4,13 @@ use fearless_simd::Level;
 
 use super::{Kind, Steps, Trajectory};
 use crate::solver::collocation::{Guess, Substep, Task, solve_by_16};
+use crate::solver::dense_output::{PAIRS, Segment};
 use crate::solver::double::Double;
 use crate::solver::endpoint::{End, Way};
 use crate::solver::extremes::Extremes;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::Diverged;
 use crate::solver::limits::Limits;
-use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::short_step::{ShortStep, Trend};
 use crate::solver::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use crate::solver::{Equation, LocalEquation, State};

@@ -6,9 +6,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::dense_output::History;
 use super::double::Double;
 use super::endpoint::{EndpointSteps, SingleSteps};
-use super::integrator::{History, Integrator, Method};
+use super::integrator::{Integrator, Method};
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::Trend;

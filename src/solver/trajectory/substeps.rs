@@ -2,8 +2,8 @@
 
 use super::{Failure, Progress, Trajectory};
 use crate::solver::Equation;
+use crate::solver::dense_output::Segment;
 use crate::solver::double::Double;
-use crate::solver::segment::Segment;
 
 impl Trajectory {
     /// Follows the motion over one substep of 16 nodes from `clock`, no longer than `most`, and

@@ -3,8 +3,8 @@
 use super::{Carried, Trajectory};
 use crate::solver::coupled::polynomials::{Coefficients, Polynomials, sum};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
+use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
 use crate::solver::integrator::{Method, Place};
-use crate::solver::segment::{Segment, VALIDATION_TOLERANCE};
 
 impl Trajectory {
     /// The present first-order states.

@@ -2,8 +2,8 @@
 
 use super::{Event, Trajectory};
 use crate::solver::coupled::{CoupledEquation, LocalCoupledEquation, Stage};
+use crate::solver::dense_output::{PARTS, Segment};
 use crate::solver::roots::{crossing, lowest_between};
-use crate::solver::segment::{PARTS, Segment};
 
 impl Trajectory {
     /// Looks for the first event in the last step, whose nodes lie in the `range`.

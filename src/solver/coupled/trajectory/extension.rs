@@ -6,10 +6,10 @@ use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
 use crate::solver::coupled::stages::{self, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
+use crate::solver::dense_output::{PAIRS, Segment};
 use crate::solver::double::Double;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
-use crate::solver::segment::{PAIRS, Segment};
 use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};
 
 /// Part of the tolerance that one step may spend between its ends: a motion may swing by much

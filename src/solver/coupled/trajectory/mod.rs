@@ -4,8 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
+use crate::solver::dense_output::History;
 use crate::solver::double::Double;
-use crate::solver::integrator::{History, Integrator, Mode};
+use crate::solver::integrator::{Integrator, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
 use crate::solver::outcome::Progress as PlainProgress;

@@ -1,73 +1,15 @@
-//! Where in the kept steps the present lies, and what the motion is there.
+//! What the motion meets on its way: limits at which it stops, turning points between which it
+//! repeats, extremes that are recorded.
 
-use super::{Integrator, KeptStep, Method, Mode, PositionOrigin};
-use crate::solver::State;
+use super::{Integrator, Method, Mode};
 use crate::solver::double::Double;
 use crate::solver::extremes::Extremes;
+use crate::solver::limits::{Limit, Limits};
 use crate::solver::orbit::Orbit;
+use crate::solver::position_origin::PositionOrigin;
 use crate::solver::roots::crossing;
 
-/// Where the present lies.
-pub enum Place<'a, O> {
-    /// At the start.
-    Start,
-    /// Inside a step, at this offset after its begin.
-    Inside(&'a KeptStep<O>, f64),
-    /// At the end of a step.
-    End(&'a KeptStep<O>),
-}
-
 impl<M: Method> Integrator<M> {
-    /// The present position, counted from 0.
-    #[must_use]
-    pub fn position(&self) -> f64 {
-        let (origin, position) = self.position_from_origin();
-        origin.absolute(position)
-    }
-
-    /// The present position, counted from the origin that is returned with it.
-    #[must_use]
-    pub fn position_from_origin(&self) -> (M::Origin, f64) {
-        match self.place() {
-            Place::Start => (self.position_origin, self.start.position),
-            Place::Inside(step, offset) => (step.origin, step.segment.position(offset)),
-            Place::End(step) => (step.origin, step.segment.end().position),
-        }
-    }
-
-    /// The present rate.
-    #[must_use]
-    pub fn rate(&self) -> f64 {
-        self.mode.direction()
-            * match self.place() {
-                Place::Start => self.start.rate,
-                Place::Inside(step, offset) => step.segment.rate(offset),
-                Place::End(step) => step.segment.end().rate,
-            }
-    }
-
-    /// The present position, counted from 0, and rate.
-    #[must_use]
-    pub fn state(&self) -> State {
-        State {
-            position: self.position(),
-            rate: self.rate(),
-        }
-    }
-
-    pub(in crate::solver) fn place(&self) -> Place<'_, M::Origin> {
-        if self.history.is_empty() || self.now == Double::ZERO {
-            return Place::Start;
-        }
-        let step = &self.history.steps()[self.index];
-        let offset = self.now.since(step.begin);
-        if offset == step.segment.length() {
-            Place::End(step)
-        } else {
-            Place::Inside(step, offset)
-        }
-    }
-
     /// Moves the present to `target`, which lies in one of the steps.
     pub(in crate::solver) fn arrive(&mut self, target: Double) {
         self.now = target;
@@ -197,6 +139,30 @@ impl<M: Method> Integrator<M> {
                 };
             }
             Some(_) => {}
+        }
+    }
+
+    /// The limit that the motion first meets in the last step, and the offset at which it does.
+    /// `lowest` and `highest` hold the motion there.
+    pub(in crate::solver) fn first_contact(
+        &mut self,
+        lowest: f64,
+        highest: f64,
+    ) -> Option<(Limit, f64)> {
+        let limits = self.limits;
+        let step = self.history.steps_mut().last_mut()?;
+        let limits = Limits {
+            lower: step.origin.relative(limits.lower),
+            upper: step.origin.relative(limits.upper),
+        };
+        limits.first_contact(&mut step.segment, lowest..=highest)
+    }
+
+    /// Notes that the motion stops at this offset after the begin of the last step.
+    pub(in crate::solver) fn stop_in_last_step(&mut self, event: Option<(M::Event, f64)>) {
+        let begin = self.history.steps().last().map(|step| step.begin);
+        if let (Mode::Dense { stop, .. }, Some(begin)) = (&mut self.mode, begin) {
+            *stop = event.map(|(event, offset)| (event, begin.plus(offset)));
         }
     }
 }
