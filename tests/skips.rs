@@ -1,7 +1,7 @@
 //! What a scene does not need is skipped, and no result changes by it.
 //!
 //! Beside these: orbits, splitting of steps, saved states and extremes in
-//! `solver.rs`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
+//! `solver`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
 
 use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::model::variables::Kind;

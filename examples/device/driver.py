@@ -9,7 +9,6 @@ how well it does, and the error of the coupling against SciPy's DOP853 on the lo
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
@@ -18,20 +17,16 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
-from dielectric_actuator import packed_fmu
-
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "system"))
 
 import figure_style as style
+import options
 from coupling import Coupling
 from film import Equation
 from pack import pack_system
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("si")
 TARGETS = ((0.0, 100e-6), (8e-3, 350e-6), (16e-3, 50e-6), (24e-3, 200e-6))
 """From when on, in s, the controller is to hold which displacement, in m."""
 
@@ -131,11 +126,7 @@ def draw(rows: np.ndarray) -> Figure:
 
 def main() -> None:
     """Pack, run, print, draw."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=FMU, help="the packed actuator (%(default)s)")
-    parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder (%(default)s)")
-    parser.add_argument("--stop-time", type=float, default=STOP_TIME, help="s, a multiple of the largest step")
-    arguments = parser.parse_args()
+    arguments = options.parse(__doc__, STOP_TIME)
     style.apply()
     ssp = pack_system(arguments.fmu, arguments.output, HERE / "driver")
     print(ssp)

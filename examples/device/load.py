@@ -10,7 +10,6 @@ and writes edge_load.png.
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import sys
 from collections.abc import Callable
@@ -25,20 +24,18 @@ from fmpy.ssp.ssd import read_ssv
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp
 
-from dielectric_actuator import Actuator, packed_fmu
+from dielectric_actuator import Actuator
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "system"))
 
 import figure_style as style
+import options
 from coupling import Coupling
 from film import FILM, Equation
 from pack import pack_system
 
 HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("si")
 STOP_TIME = 10.24e-3
 STEPS = (80e-6, 40e-6, 20e-6, 10e-6, 5e-6)
 """Communication steps in s; the film alone swings in 810 µs."""
@@ -157,11 +154,7 @@ def draw(times: np.ndarray, exact: dict[str, np.ndarray], found: dict[str, dict[
 
 def main() -> None:
     """Pack, run, print, draw."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=FMU, help="the packed actuator (%(default)s)")
-    parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder (%(default)s)")
-    parser.add_argument("--stop-time", type=float, default=STOP_TIME, help="s, a multiple of the largest step")
-    arguments = parser.parse_args()
+    arguments = options.parse(__doc__, STOP_TIME)
     style.apply()
     ssp = pack_system(arguments.fmu, arguments.output, HERE / "load")
     print(ssp)

@@ -9,7 +9,6 @@ and writes resonance.png.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import sys
@@ -19,18 +18,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
-from dielectric_actuator import Actuator, packed_fmu
+from dielectric_actuator import Actuator
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "studies"))
 
 import figure_style as style
+import options
 from film import FILM
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
-DEFAULT_OUTPUT = ROOT / "target" / "examples" / "device"
-FMU = packed_fmu("si")
-REFERENCE = ROOT / "tests" / "reference" / "device" / "ac_steady_state.json"
+REFERENCE = options.ROOT / "tests" / "reference" / "device" / "ac_steady_state.json"
 STRONG = {"voltage": 0.0, "V_ac": 4000.0, "eta": 5.0}
 """A damping ratio of .054: one steady state at each frequency."""
 
@@ -114,10 +110,7 @@ def draw(response: np.ndarray, exact: np.ndarray, up: np.ndarray, down: np.ndarr
 
 def main() -> None:
     """Run, compare, draw."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--fmu", type=Path, default=FMU, help="the packed actuator (%(default)s)")
-    parser.add_argument("--output", type=Path, default=DEFAULT_OUTPUT, help="folder (%(default)s)")
-    arguments = parser.parse_args()
+    arguments = options.parse(__doc__)
     style.apply()
     exact = exact_states()
     with Actuator(arguments.fmu) as actuator:

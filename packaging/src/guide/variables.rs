@@ -5,7 +5,7 @@ use dielectric_elastomer_actuator::model::variables::{
     Causality, Enumeration, Kind, Variability, Variable,
 };
 
-use super::escaped;
+use super::markdown::escaped;
 
 /// The table as HTML.
 pub fn table<M: Model>() -> String {

@@ -1,10 +1,8 @@
 //! Motions that are stored, and stored bytes that are none.
 
-mod clocked;
-
-use clocked::Clocked;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
-use dielectric_elastomer_actuator::solver::trajectory::{Progress, Steps, Trajectory};
+
+use super::{Clocked, Steps, Trajectory, advance};
 
 /// φ = 0.6, S = 0.5.
 fn constant() -> Scene {
@@ -27,13 +25,9 @@ fn alternating() -> Scene {
     scene
 }
 
-fn from_rest(tolerance: f64) -> Clocked<Steps> {
+fn begun(tolerance: f64) -> Clocked<Steps> {
     let Scene { start, limits, .. } = constant();
     Clocked::from(Trajectory::new(start, limits, tolerance))
-}
-
-fn advance(trajectory: &mut Clocked<Steps>, motion: &Scene, step: f64) {
-    assert_eq!(trajectory.advance(motion, step), Ok(Progress::Whole));
 }
 
 /// A stored motion goes on as if nothing had happened, bit for bit.
@@ -42,7 +36,7 @@ fn a_stored_motion_goes_on_bit_for_bit() {
     let cases = [constant(), alternating()];
     for motion in &cases {
         for (before, step) in [(0.0, 0.37), (3.3, 0.01), (77.7, 5.0), (1234.5, 0.37)] {
-            let mut trajectory = from_rest(1e-11);
+            let mut trajectory = begun(1e-11);
             if before > 0.0 {
                 advance(&mut trajectory, motion, before);
             }
@@ -61,16 +55,16 @@ fn a_stored_motion_goes_on_bit_for_bit() {
 
 /// Numbers that do not fit together as those of one motion are noticed.
 #[test]
-fn a_forged_motion_is_not_sound() {
+fn a_forged_motion_is_not_valid() {
     let stored = |mut trajectory: Clocked<Steps>| {
         advance(&mut trajectory, &constant(), 77.7);
         serde_json::to_value(&*trajectory).expect("it can be stored")
     };
-    let plain = stored(from_rest(1e-11));
-    let recording = stored(from_rest(1e-11).with(Trajectory::recording_extremes));
-    let sound =
+    let plain = stored(begun(1e-11));
+    let recording = stored(begun(1e-11).with(Trajectory::recording_extremes));
+    let valid =
         |stored| serde_json::from_value(stored).is_ok_and(|motion: Trajectory| motion.is_valid());
-    assert!(sound(plain.clone()) && sound(recording.clone()));
+    assert!(valid(plain.clone()) && valid(recording.clone()));
     let forged = |stored: &serde_json::Value, place: &str, more: f64| {
         let mut forged = stored.clone();
         let number = forged.pointer_mut(place).expect(place);
@@ -99,11 +93,11 @@ fn a_forged_motion_is_not_sound() {
         (&recording, "/extremes/highest", 10.0),
     ] {
         let forged = forged(stored, place, more);
-        assert!(!sound(forged), "{place} in {stored:#}");
+        assert!(!valid(forged), "{place} in {stored:#}");
     }
     // Where it does not turn, with the period that goes with it.
     let turn = forged(&plain, "/mode/Periodic/orbit/second_turn/high", -0.1);
-    assert!(!sound(forged(
+    assert!(!valid(forged(
         &turn,
         "/mode/Periodic/orbit/period/high",
         -0.2
