@@ -44,9 +44,15 @@ export RUSTUP_TOOLCHAIN := stable
 endif
 endif
 
-# What `make test` runs, each a target of its own, after it has packed what several of them need. Reports are counted, and notes repeated, at its end.
-CHECKS = format lint python-lint licences documentation \
-python-types rust-tests documentation-tests fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
+# What `make test` runs, each a target of its own, in two lines side by side: what needs the packed FMU, after it is packed,
+# and the rest. A check is printed when it has ended. Reports are counted, and notes repeated, at the end.
+CHECKS_OF_THE_PACKED = fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
+CHECKS_OF_THE_SOURCES = format lint python-lint licences documentation python-types rust-tests documentation-tests
+CHECKS = $(CHECKS_OF_THE_SOURCES) $(CHECKS_OF_THE_PACKED)
+define run_checks
+for check in $(1); do $(MAKE) --no-print-directory --assume-old=fmu --assume-old=native --assume-old=page $$check \
+>$(REPORTS)/$$check.log 2>&1 || echo $$check >>$(REPORTS)/failed; cat $(REPORTS)/$$check.log; done
+endef
 REPORTS := target/reports
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
@@ -103,7 +109,7 @@ help:
 	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test            run every check and test; each is a target too:'
-	@printf '                     %s\n' '$(wordlist 1,6,$(CHECKS))' '$(wordlist 7,99,$(CHECKS))'
+	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' '$(CHECKS_OF_THE_PACKED)'
 	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
 	@echo 'make bless           write new bounds of the instructions of the hot calls (tests/performance)'
 	@echo 'make audit           look for advisories on the crates (needs the network)'
@@ -174,13 +180,13 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	printf '\n==> examples/%s.py\n' $$example; \
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
-test:
-	@rm -rf $(REPORTS); mkdir -p $(REPORTS); failed=; \
-	$(MAKE) --no-print-directory fmu native || failed=packing; \
-	for check in $(CHECKS); do \
-	$(MAKE) --no-print-directory --assume-old=fmu --assume-old=native --assume-old=page $$check || \
-	failed="$$failed $$check"; done; \
-	$(PYTHON) tests/summary.py $(REPORTS) $$failed
+# Everything is installed before the two lines begin: they would install it twice at once.
+test: $(INSTALLED) $(NODE_INSTALLED) $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED) \
+$(RELEASE_INSTALLED) $(PAGE_TESTS_INSTALLED)
+	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
+	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; $(call run_checks,$(CHECKS_OF_THE_PACKED)); } & \
+	$(call run_checks,$(CHECKS_OF_THE_SOURCES)); wait
+	@$(PYTHON) tests/summary.py $(REPORTS)
 
 format: $(TESTS_INSTALLED)
 	$(call heading,Format)

@@ -1,9 +1,9 @@
 """The end of ``make test``: what was passed over, what failed, and how many tests ran.
 
-    python tests/summary.py REPORTS [FAILED ...]
+    python tests/summary.py REPORTS
 
-Reads the JUnit reports below the folder REPORTS, and the file `notes` there, a line for each check that was
-passed over; FAILED names the checks that failed. Ends with status 1 if a check or a test failed or no test ran.
+Reads the JUnit reports below the folder REPORTS, and two files there with a line for each check: `notes` for one that
+was passed over, `failed` for one that failed. Ends with status 1 if a check or a test failed or no test ran.
 """
 
 import sys
@@ -14,10 +14,10 @@ from xml.etree import ElementTree
 
 def main() -> int:
     """Print the summary and return the status."""
-    reports, failed_checks = Path(sys.argv[1]), sys.argv[2:]
+    reports = Path(sys.argv[1])
     counts: Counter[str] = Counter(passed=0, failed=0, skipped=0)
-    passed_over = notes.read_text().splitlines() if (notes := reports / "notes").exists() else []
-    failures = [f"the check {name}" for name in failed_checks]
+    passed_over = lines_of(reports / "notes")
+    failures = [f"the check {name}" for name in lines_of(reports / "failed")]
     for path in sorted(reports.rglob("*.xml")):
         for case in ElementTree.parse(path).iter("testcase"):
             name = f"{case.get('classname')} {case.get('name')}"
@@ -33,6 +33,11 @@ def main() -> int:
             print(f"{heading}: {line}")
     print(f"{counts['passed']} passed, {counts['failed']} failed, {counts['skipped']} skipped")
     return int(bool(failures) or not counts["passed"])
+
+
+def lines_of(path: Path) -> list[str]:
+    """The lines of a file, none where there is no file."""
+    return path.read_text().splitlines() if path.exists() else []
 
 
 def outcome_of(case: ElementTree.Element) -> tuple[str, str]:

@@ -33,7 +33,9 @@ def test_the_citation_names_this_version_and_the_paper_in_full():
     assert [f"{author['given-names']} {author['family-names']}" for author in paper["authors"]] == AUTHORS
 
 
-@pytest.mark.parametrize("page", ["README.md", "ARCHITECTURE.md", "docs/paper.md", "docs/guide/0-model.md", "python/README.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "ARCHITECTURE.md", "docs/paper.md", "docs/guide/0-model.md", "python/README.md"]
+)
 def test_the_pages_cite_the_paper_as_the_citation_does(page):
     text = re.sub(r"\s*\n(> )?\s*", " ", (REPOSITORY / page).read_text())
     assert PAPER in text
