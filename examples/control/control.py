@@ -98,10 +98,9 @@ def draw_near_pull_in(runs: dict[str, Run]) -> Figure:
         if run.pulled_in:
             left = run.rows["time"][run.rows["stretch"] > HIGHEST][0]
             stretch.annotate(
-                f"collapse: {style.SYMBOLS['lambda']} = {COLLAPSED:g} by {style.SYMBOLS['time']} = "
-                f"{math.ceil(run.rows['time'][-1]):g}",
+                f"collapse: {style.SYMBOLS['lambda']} = {COLLAPSED:g} by {style.SYMBOLS['time']} = {run.ended_by}",
                 (left, HIGHEST),
-                (SILENCE[1] + 2, HIGHEST - 0.06),
+                (SILENCE[0] - 65, HIGHEST - 0.06),
                 arrowprops={"arrowstyle": "->", "color": style.BLACK},
                 fontsize=9.5,
                 va="center",
@@ -166,7 +165,7 @@ def main() -> None:
             late = run.rows["stretch"][run.rows["time"] >= SILENCE[1]]
             end = f"largest stretch {run.rows['stretch'].max():.4f}"
             if run.pulled_in:
-                end = f"pulled in by {run.rows['time'][-1]:.0f}"
+                end = f"pulled in by {run.ended_by}"
             else:
                 end += f", rings at the end by {np.ptp(late) / 2:.4f}"
             print(f"target beyond the fold, {name}: {end}", flush=True)

@@ -42,6 +42,11 @@ class Run:
     seconds: np.ndarray
     pulled_in: bool
 
+    @property
+    def ended_by(self) -> int:
+        """A whole time by which the run had ended: the last row is before a collapse."""
+        return math.ceil(self.rows["time"][-1])
+
     def deviation(self, start_time: float) -> float:
         """Root mean square of target − λ from `start_time` on."""
         rows = self.rows[self.rows["time"] >= start_time]
