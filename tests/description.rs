@@ -2,9 +2,7 @@
 
 use dielectric_elastomer_actuator::description;
 use dielectric_elastomer_actuator::model::Model;
-use dielectric_elastomer_actuator::model::variables::{
-    self, Causality, Kind, Variability, Variable,
-};
+use dielectric_elastomer_actuator::model::variables::{self, Causality, Kind, Variable};
 use dielectric_elastomer_actuator::nondimensional::{ALIASES, Nondimensional, VARIABLES};
 use dielectric_elastomer_actuator::si::Si;
 use fmi::fmi2::schema::Fmi2ModelDescription;
@@ -98,13 +96,7 @@ fn the_readme_lists_the_variables_as_the_table_does() {
 
 /// A variable as a row in Markdown.
 fn row<M: Model>(variable: &Variable<M>) -> String {
-    let kind = match (variable.causality, variable.variability) {
-        (Causality::Parameter, Variability::Tunable) => "tunable parameter",
-        (Causality::Parameter, _) => "parameter",
-        (Causality::Input, _) => "input",
-        (Causality::Output, _) => "output",
-        (Causality::Local, _) => "local",
-    };
+    let kind = variable.role();
     let (of_type, start) = match (variable.kind, variable.start) {
         (Kind::Real { .. }, start) => ("", start.map(|start| start.to_string())),
         (Kind::Boolean, start) => (", Boolean", start.map(|start| (start != 0.0).to_string())),

@@ -147,6 +147,26 @@ impl Scales {
     pub fn time(&self, seconds: Double) -> Double {
         seconds.div(self.exact_time)
     }
+
+    /// Whether the numbers can be scales: to be checked where they do not come from this process.
+    #[must_use]
+    pub fn are_valid(&self) -> bool {
+        let Scales {
+            time,
+            exact_time,
+            voltage,
+            charge,
+            energy,
+            force,
+            capacitance,
+            length,
+            field,
+        } = *self;
+        let electrical = [voltage, charge, capacitance, field];
+        let mechanical = [time, exact_time.value(), energy, force, length];
+        let mut all = electrical.into_iter().chain(mechanical);
+        all.all(|scale| scale > 0.0 && scale.is_finite())
+    }
 }
 
 impl Scales<Dual> {

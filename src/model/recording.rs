@@ -46,9 +46,7 @@ impl Recording {
     #[must_use]
     pub fn is_valid(&self, recorded: bool) -> bool {
         let State { position, rate } = self.state;
-        let extremes = self.extremes.is_none_or(|Extremes { lowest, highest }| {
-            lowest <= highest && lowest.is_finite() && highest.is_finite()
-        });
+        let extremes = self.extremes.is_none_or(|extremes| extremes.is_valid());
         position.is_finite()
             && rate.is_finite()
             && self.time.is_finite()

@@ -120,10 +120,7 @@ impl Curves {
         }
         let still = Device {
             branches,
-            damping: Damping {
-                linear: 0.0,
-                viscosity: 0.0,
-            },
+            damping: Damping::NONE,
             port: Port {
                 resistance: 0.0,
                 ..device.port

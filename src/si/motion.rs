@@ -277,41 +277,16 @@ impl Motion<Si> for SiMotion {
     fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
         let valid = self.course.is_valid(scene, tolerance);
         let positive = |number: f64| number > 0.0 && number.is_finite();
-        let Scales {
-            time,
-            exact_time,
-            voltage,
-            charge,
-            energy,
-            force,
-            capacitance,
-            length,
-            field,
-        } = self.scales;
         valid
             && self.tolerance == tolerance
             && self.lead.is_finite()
             && self.motion.is_plain() == self.course.is_plain()
-            && [
-                time,
-                exact_time.value(),
-                voltage,
-                charge,
-                energy,
-                force,
-                capacitance,
-                length,
-                field,
-            ]
-            .into_iter()
-            .all(positive)
+            && self.scales.are_valid()
             && self.charge.is_finite()
             && self.dashpots.into_iter().all(positive)
             && self.breakdown.is_none_or(|time| time.is_finite())
             && self.extremes().is_some() == scene.records_extremes()
-            && self.earlier.is_none_or(|Extremes { lowest, highest }| {
-                lowest <= highest && lowest.is_finite() && highest.is_finite()
-            })
+            && self.earlier.is_none_or(|extremes| extremes.is_valid())
     }
 
     fn whereabouts(&self) -> String {

@@ -26,4 +26,10 @@ impl Extremes {
         self.lowest = self.lowest.min(position);
         self.highest = self.highest.max(position);
     }
+
+    /// Whether the numbers can be those of a motion.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        self.lowest <= self.highest && self.lowest.is_finite() && self.highest.is_finite()
+    }
 }

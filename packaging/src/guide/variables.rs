@@ -1,9 +1,7 @@
 //! The table of variables of a model, from the variables themselves.
 
 use dielectric_elastomer_actuator::model::Model;
-use dielectric_elastomer_actuator::model::variables::{
-    Causality, Enumeration, Kind, Variability, Variable,
-};
+use dielectric_elastomer_actuator::model::variables::{Causality, Enumeration, Kind, Variable};
 
 use super::markdown::escaped;
 
@@ -30,13 +28,7 @@ pub fn table<M: Model>() -> String {
 }
 
 fn row<M: Model>(variable: &Variable<M>) -> String {
-    let kind = match (variable.causality, variable.variability) {
-        (Causality::Parameter, Variability::Tunable) => "tunable parameter",
-        (Causality::Parameter, _) => "parameter",
-        (Causality::Input, _) => "input",
-        (Causality::Output, _) => "output",
-        (Causality::Local, _) => "local",
-    };
+    let kind = variable.role();
     let set = matches!(variable.causality, Causality::Parameter | Causality::Input);
     let allowed = match variable.kind {
         Kind::Real { min, max, .. } if min == f64::MIN && max == f64::MAX => String::new(),

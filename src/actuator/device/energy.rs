@@ -181,7 +181,7 @@ impl LocalDevice<'_> {
         let device = self.device;
         let load = self.load(offset);
         let stretch = self.stretch(stage.position);
-        let damping = device.damping.linear + 6.0 * device.damping.viscosity / (stretch * stretch);
+        let damping = device.damping.coefficient(stretch);
         let mut branches = 0.0;
         for (k, branch) in device.present_branches().enumerate() {
             let strain_rate = self.branch_state(slopes, k) / self.branch_state(&stage.internal, k);

@@ -118,10 +118,7 @@ impl Device {
                 rest: 1.0,
             },
             permittivity: Permittivity { terms: [0.0; 3] },
-            damping: Damping {
-                linear: 0.0,
-                viscosity: 0.0,
-            },
+            damping: Damping::NONE,
             branches: [Branch::NONE; MOST_BRANCHES],
             port: Port {
                 source: Source::Voltage,
@@ -217,10 +214,23 @@ impl<P: Parameter> Permittivity<P> {
 }
 
 impl Damping {
+    /// Nothing is lost.
+    pub const NONE: Damping = Damping {
+        linear: 0.0,
+        viscosity: 0.0,
+    };
+
     /// Whether nothing is lost.
     #[must_use]
     pub fn is_none(&self) -> bool {
-        self.linear == 0.0 && self.viscosity == 0.0
+        *self == Damping::NONE
+    }
+
+    /// The damping force over the rate, at a stretch.
+    #[must_use]
+    pub fn coefficient(&self, stretch: f64) -> f64 {
+        let Damping { linear, viscosity } = *self;
+        linear + 6.0 * viscosity / (stretch * stretch)
     }
 }
 

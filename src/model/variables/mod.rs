@@ -269,6 +269,18 @@ pub fn value_reference<M: Model>(name: &str) -> Option<u32> {
 }
 
 impl<M: Model> Variable<M> {
+    /// Its role in words, for tables.
+    #[must_use]
+    pub fn role(&self) -> &'static str {
+        match (self.causality, self.variability) {
+            (Causality::Parameter, Variability::Tunable) => "tunable parameter",
+            (Causality::Parameter, _) => "parameter",
+            (Causality::Input, _) => "input",
+            (Causality::Output, _) => "output",
+            (Causality::Local, _) => "local",
+        }
+    }
+
     /// Whether the host prescribes it as a function of time.
     #[must_use]
     pub const fn is_input(&self) -> bool {

@@ -211,7 +211,7 @@ fn excess_of(
     trajectory.begin_anew(REST, limits, TOLERANCE);
     trajectory.record_extremes_anew(!charges);
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
-    let slowness = 1.0 + (device.damping.linear + 6.0 * device.damping.viscosity) / period;
+    let slowness = 1.0 + device.damping.coefficient(1.0) / period;
     let look = 0.5 * period * slowness;
     for _ in 0..MOST_LOOKS {
         match trajectory.advance(&motion, &mut clock, look) {
@@ -270,9 +270,9 @@ impl Curves {
             [force, inertia]
         });
         let stiffness = (force.slope() / inertia.value()).max(0.0);
-        let square = self.stretch(saddle).powi(2);
-        let resistive = 8.0 * device.port.resistance * voltage * voltage * square.powi(3);
-        let viscous = device.damping.linear + 6.0 * device.damping.viscosity / square;
+        let stretch = self.stretch(saddle);
+        let resistive = 8.0 * device.port.resistance * voltage * voltage * stretch.powi(2).powi(3);
+        let viscous = device.damping.coefficient(stretch);
         let half = 0.5 * (viscous + resistive) / inertia.value();
         let root = (half * half + stiffness).sqrt();
         // Without the loss where the damping is strong.
