@@ -3,7 +3,7 @@
 * `Actuator`: one instance of a packed FMU, nondimensional or in SI units; `frame` makes a pandas table of a response;
 * `presets`: scenes that show a motion, and materials;
 * `ensemble`, `grid`: many scenes at once, in SIMD lanes on every core;
-* `sensitivities`: a motion with its exact derivatives by the parameters;
+* `sensitivities`: a motion with its derivatives by the parameters, integrated along with it;
 * `identification.fit`: parameters from measured data, which `measured` reads (extra ``fit``); `device` leads from SI
   units to the nondimensional model;
 * `plot`: history, phase portrait, pull-in margin (extra ``plot``).

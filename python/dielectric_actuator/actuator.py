@@ -181,7 +181,7 @@ class Actuator:
         return found[names[0]] if len(names) == 1 else [found[name] for name in names]
 
     def directional_derivatives(self, unknowns: Iterable[str], known: str) -> list[float]:
-        """∂unknown/∂known of each unknown at the present state, exact."""
+        """∂unknown/∂known of each unknown at the present state, exact but for rounding."""
         references = [self._variables.reference(name) for name in unknowns]
         with self._reasons():
             return list(self._fmu.getDirectionalDerivative(references, [self._variables.reference(known)], [1.0]))

@@ -83,7 +83,7 @@ def sensitivities(
     interpolation: str = "linear",
     tolerance: float = native.DEFAULT_TOLERANCE,
 ) -> tuple[Floats, Floats]:
-    """The stretch of a device under a voltage in volts at times in seconds, and its exact derivatives by `NAMES`.
+    """The stretch of a device under a voltage in volts at times in seconds, and its derivatives by `NAMES`.
 
     Otherwise as `dielectric_actuator.sensitivities`, which see.
     """

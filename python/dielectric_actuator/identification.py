@@ -1,4 +1,4 @@
-"""Parameters from measured voltage and stretch: least squares with the exact sensitivities of the motion.
+"""Parameters from measured voltage and stretch: least squares with the sensitivities of the motion.
 
 Gauss–Newton steps in a trust region (``scipy.optimize.least_squares``); the Jacobian is that of the variational
 equations along the trajectory (`sensitivities`), nothing is differenced. Uncertainties are those of the linearized

@@ -65,7 +65,7 @@ def run_scenes(actuator: Actuator, measure: Measure, scenes: list[dict[str, floa
 def frequency_response(actuator: Actuator, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:
     """Half the range of λ₃ from rest to `stop_time` (the paper's λ₃ᵃ), in a single communication step.
 
-    The running extremes of the FMU are located exactly, so that nothing needs to be sampled.
+    The FMU locates the extremes between communication points, so that nothing needs to be sampled.
     """
     actuator.start({**scene, "record_extremes": True})
     actuator.advance(stop_time)

@@ -1,4 +1,4 @@
-"""The core of the actuator where no host is in the loop: ensembles in SIMD lanes, and exact sensitivities.
+"""The core of the actuator where no host is in the loop: ensembles in SIMD lanes, and sensitivities.
 
 A small shared library in the package does the work (`python/native` of the sources), without FMI.
 """
@@ -123,7 +123,7 @@ def ensemble(
     `scenes` holds a column for each variable that is not at its start value, of `scene_names`; numbers and
     columns are broadcast. Voltage and prestress are constant but for the built-in alternating voltage. The
     result is a structured array, a row a scene, with the FMU's names: ``lambda`` and ``lambda_dot`` at the end or
-    where the actuator was pulled in, ``lambda_lowest`` and ``lambda_highest`` on the way, located exactly, the
+    where the actuator was pulled in, ``lambda_lowest`` and ``lambda_highest`` on the way, located between steps, the
     same of ``lambda3``, ``pulled_in`` and ``pull_in_time`` (+inf where it was not). Where the integration
     cannot go on the numbers are NaN. `progress` is called with the number of scenes done and that of all.
 
@@ -178,7 +178,9 @@ def sensitivities(
     interpolation: str = "linear",
     tolerance: float = DEFAULT_TOLERANCE,
 ) -> tuple[Floats, Floats]:
-    """The stretch under a given voltage, and its exact derivatives by each of `known_names`.
+    """The stretch under a given voltage, and its derivatives by each of `known_names`.
+
+    The derivatives are integrated along with the motion, over its steps: none is a difference of two runs.
 
     The voltage is ``phi_scale`` times the given one, which is a straight line between two samples
     (`interpolation` "linear") or keeps its value up to the next ("hold"); the times are multiplied by
