@@ -8,6 +8,9 @@ use super::iteration::IterationTolerance;
 /// neglected Legendre coefficient of f (degree 16), twice integrated.
 const ORDER_INSIDE: f64 = 18.0;
 
+/// Order with which the error at its end falls.
+const ORDER_AT_END: f64 = 32.0;
+
 /// Part of the tolerance that is left for the end of a substep, and to which its
 /// stages are solved: unlike the error between the nodes, what is left there
 /// adds up from substep to substep (1e3-fold in 2000 units of time of a
@@ -28,12 +31,12 @@ const REPEATED_SHARE: f64 = 0.001;
 /// square of the length, and near 1 the iteration diverges.
 pub(super) const SLOW: f64 = 0.35;
 
-/// The contraction that is slow in an endpoint-only step, whose first guess is good for short ones
-/// only.
-const SLOW_ENDPOINT: f64 = 0.25;
+/// The contraction that is slow in a step of 16 nodes of which only the end is asked for, whose first guess is
+/// good for short ones only.
+const SLOW_AT_END: f64 = 0.25;
 
-/// Tolerance above which single endpoint-only steps of 8 nodes are faster than those of 16. Measured
-/// near resonance, at equal error: 25 % at 1e-6, nothing at 1e-10.
+/// Tolerance above which steps of 8 nodes are faster than those of 16 where the equation changes after a
+/// few of them. Measured near resonance, at equal error: 25 % at 1e-6, nothing at 1e-10.
 const LOOSE: f64 = 3e-10;
 
 /// What the next substep aims at, so that few are rejected: an error of
@@ -146,6 +149,19 @@ impl StepControl {
         IterationTolerance::new(error, position * short * short)
     }
 
+    /// Judges a step of 16 nodes of which only the end is asked for by its estimated error there,
+    /// relative to the position, as [`StepControl::judge`] does.
+    ///
+    /// # Errors
+    /// By which factor to shorten it.
+    pub fn judge_end(&self, error: f64, contraction: f64) -> Result<f64, f64> {
+        judge(
+            error / self.end_tolerance(),
+            ORDER_AT_END,
+            SLOW_AT_END / contraction,
+        )
+    }
+
     /// Judges a step with dense output by its estimated error inside, relative to the position, and
     /// by the contraction of its iteration: by which factor the next one may be longer.
     ///
@@ -153,16 +169,6 @@ impl StepControl {
     /// By which factor to shorten it.
     pub fn judge(&self, error: f64, contraction: f64) -> Result<f64, f64> {
         judge(error / self.tolerance, ORDER_INSIDE, SLOW / contraction)
-    }
-
-    /// Judges an endpoint-only step of P node pairs by its estimated error at the end, and by the
-    /// contraction of its iteration, as [`StepControl::judge`] does.
-    pub fn judge_end<const P: usize>(&self, error: f64, contraction: f64) -> Result<f64, f64> {
-        judge(
-            error / self.end_tolerance(),
-            4.0 * P as f64,
-            SLOW_ENDPOINT / contraction,
-        )
     }
 }
 

@@ -6,15 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::plan::{NODES, Pair, Plan, pair, shifted, unpair};
 use crate::solver::number::Number;
 
-/// The slope of a plan is bounded so that its matrices are well conditioned.
-pub const STEEPEST: f64 = 8.0;
-
 /// The last step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Before {
-    pub half: f64,
-    /// half²·J of its plan.
-    pub product: f64,
     /// By how much the position has moved.
     pub moved: f64,
     /// g of its plan, and the displacement since its begin, at the nodes.
@@ -26,18 +20,14 @@ impl Before {
     /// Whether the numbers can be those of a step.
     pub fn is_valid(&self) -> bool {
         let numbers = self.g.iter().chain(&self.displacement);
-        self.half > 0.0
-            && self.half.is_finite()
-            && (-STEEPEST..=0.0).contains(&self.product)
-            && numbers
-                .chain([&self.moved])
-                .all(|number| number.is_finite())
+        numbers
+            .chain([&self.moved])
+            .all(|number| number.is_finite())
     }
 
-    /// g of the step after, on its plan.
+    /// g of the step after on its plan, where this one had half the length `half` and the slope `slope`.
     #[inline(always)]
-    pub fn continued<S: Simd>(&self, simd: S, plan: &Plan) -> Pair<S> {
-        let slope = self.product / (self.half * self.half);
+    pub fn continued<S: Simd>(&self, simd: S, plan: &Plan, half: f64, slope: f64) -> Pair<S> {
         let change = f64x4::splat(simd, slope - plan.slope);
         let [low, high] = pair(simd, &self.g);
         let displacement = pair(simd, &self.displacement);
@@ -45,11 +35,11 @@ impl Before {
             displacement[0].mul_add(change, low),
             displacement[1].mul_add(change, high),
         ];
-        if self.half == plan.half {
+        if half == plan.half {
             return plan.ahead(simd, g, self.moved);
         }
         shifted(
-            plan.resampled(simd, &unpair(g), self.half),
+            plan.resampled(simd, &unpair(g), half),
             plan.slope * self.moved,
         )
     }

@@ -13,20 +13,20 @@ use serde::{Deserialize, Serialize};
 
 use super::double::Double;
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
-use super::step_control::{HALVED, SHORTEST, StepControl, factor, shortened};
+use super::step_control::{HALVED, SHORTEST, StepControl, shortened};
 use super::{Equation, LocalEquation, State};
 
 mod before;
+mod length;
 mod matrix;
 mod plan;
-mod single;
 mod stages;
 mod table;
 mod way;
 
-use before::{Before, STEEPEST};
-use plan::{NODES, Plan, largest, pair, shifted, sine_and_cosine, unpair};
-pub use single::SingleSteps;
+use before::Before;
+use length::{ORDER, Seen};
+use plan::{Plan, largest, pair, shifted, sine_and_cosine, unpair};
 use stages::{AVERAGED, Stages, averaged, solve, stays_between};
 pub use way::{End, Way};
 
@@ -38,18 +38,6 @@ const NEGLECTED_WITH_PLAN: f64 = 2e4;
 /// What the iteration of the stages may leave, as a multiple of what a step may miss: it adds up from
 /// step to step less than that.
 const LEFT: f64 = 10.0;
-
-/// Order of the error at the end of a step.
-const ORDER: f64 = 2.0 * NODES as f64;
-
-/// Contraction above which shorter steps are cheaper.
-const SLOW: f64 = 0.25;
-
-/// Steps after which their length is looked at, and by which part it must be too long or too short
-/// to be changed: a new plan costs as much as a step.
-const CALM: u32 = 8;
-const TOO_LONG: f64 = 0.96;
-const TOO_SHORT: f64 = 1.25;
 
 /// Steps after which the load and its phase are taken anew from the time.
 const RENEWED: f64 = 16.0;
@@ -67,14 +55,20 @@ const FEW: f64 = 3.0;
 /// half as many steps.
 const FAST: f64 = 0.1;
 
+/// The slope of a plan is bounded so that its matrices are well conditioned.
+const STEEPEST: f64 = 8.0;
+
 const FIRST_ITERATIONS: u32 = 4;
 const LEAST_ITERATIONS: u32 = 2;
 
 /// What steps leave behind for the next ones. Plans are not stored: they follow from the rest.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct EndpointSteps {
     /// Length of the next one, where it is free.
     length: Option<f64>,
+    /// Half the length of the last one and half²·J of its plan, 0 where there was none.
+    half: f64,
+    product: f64,
     before: Option<Before>,
     /// How often the stages are iterated before it is looked whether that was enough.
     iterations: u32,
@@ -83,88 +77,50 @@ pub struct EndpointSteps {
     slope: f64,
     states: f64,
     #[serde(skip)]
-    plan: Plan,
-}
-
-/// The worst of the steps since the length was looked at: its error as a part of what is allowed,
-/// and its contraction.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-struct Seen {
-    steps: u32,
-    error: f64,
-    contraction: f64,
-}
-
-impl Seen {
-    const NOTHING: Seen = Seen {
-        steps: 0,
-        error: 0.0,
-        contraction: 0.0,
-    };
-
-    /// By which factor steps may be longer.
-    #[inline(always)]
-    fn factor(&self) -> f64 {
-        factor(self.error, ORDER).min((SLOW / self.contraction.max(1e-6)).sqrt())
-    }
-
-    /// After enough steps of this `length`, how long they should be from now on if that is another
-    /// length than is `wanted`, which they have when the way allows it.
-    #[inline(always)]
-    fn another_length(&mut self, length: f64, wanted: f64) -> Option<f64> {
-        if self.steps < CALM {
-            return None;
-        }
-        let next = self.factor() * length;
-        *self = Seen::NOTHING;
-        if next < TOO_LONG * length {
-            Some(next)
-        } else if next > TOO_SHORT * wanted {
-            Some(next.min(2.0 * length).max(wanted))
-        } else {
-            None
-        }
-    }
+    plan: Box<Plan>,
 }
 
 impl EndpointSteps {
     /// No step yet.
-    pub const NONE: EndpointSteps = EndpointSteps {
-        length: None,
-        before: None,
-        iterations: FIRST_ITERATIONS,
-        seen: Seen::NOTHING,
-        slope: 0.0,
-        states: 0.0,
-        plan: Plan::NONE,
-    };
+    pub fn none() -> EndpointSteps {
+        EndpointSteps {
+            length: None,
+            half: 0.0,
+            product: 0.0,
+            before: None,
+            iterations: FIRST_ITERATIONS,
+            seen: Seen::NOTHING,
+            slope: 0.0,
+            states: 0.0,
+            plan: Box::default(),
+        }
+    }
 
     /// Whether the way to go is longer than a step.
     pub fn are_shorter_than(&self, rest: f64) -> bool {
         self.length.is_none_or(|length| length < rest)
     }
 
+    /// Whether so many of them, as far as is known, reach so far.
+    pub fn reach(&self, rest: f64, steps: f64) -> bool {
+        self.length.is_none_or(|length| rest <= steps * length)
+    }
+
     /// The equation has changed: f does not go on where it was.
     pub fn restart(&mut self) {
         self.before = None;
-        self.iterations = FIRST_ITERATIONS;
-        self.seen = Seen::NOTHING;
-        self.states = 0.0;
     }
 
     /// Whether the numbers can be those of steps.
     pub fn are_valid(&self) -> bool {
         let positive = |number: f64| number > 0.0 && number.is_finite();
-        let Seen {
-            steps,
-            error,
-            contraction,
-        } = self.seen;
-        self.before.is_none_or(|before| before.is_valid())
+        self.before
+            .is_none_or(|before| before.is_valid() && self.half > 0.0)
+            && (0.0..f64::INFINITY).contains(&self.half)
+            && (-STEEPEST..=0.0).contains(&self.product)
             && self.length.is_none_or(positive)
             && (LEAST_ITERATIONS..=MOST_ITERATIONS).contains(&self.iterations)
-            && [error, contraction].iter().all(|worst| *worst >= 0.0)
-            && steps <= CALM
+            && self.seen.is_valid()
             && self.slope.is_finite()
             && (0.0..=AVERAGED).contains(&self.states)
     }
@@ -214,33 +170,41 @@ impl EndpointSteps {
         let count = (rest / free - 1e-9).ceil().max(1.0);
         let mut length = rest / count;
         // The host's times are rounded: steps that only differ by that share a plan.
-        if let Some(before) = &self.before
-            && (rest - 2.0 * before.half * count).abs() < SAME * length
-        {
-            length = 2.0 * before.half;
+        if (rest - 2.0 * self.half * count).abs() < SAME * length {
+            length = 2.0 * self.half;
         }
         let shortest = SHORTEST * rest.min(time_scale);
         if length.is_nan() || length <= shortest || longest < FAST * time_scale {
             return Some(End::Blocked);
         }
         let half = 0.5 * length;
-        let product = self.product(simd, &local, way.state, half, count);
+        let square = half * half;
         let [frequency, angle] = local.harmonic().unwrap_or_default();
         let alternates = frequency != 0.0;
-        self.plan.prepare(simd, half, product, frequency);
-        let plan = &self.plan;
-        let slope = plan.slope;
         let mut phase = match alternates {
             true => sine_and_cosine(simd, angle),
             false => [0.0; 2],
         };
+        let splat = |value: f64| f64x4::splat(simd, value);
+        let load = local.load_with_sine(splat(0.0), splat(phase[0]));
+        let last_slope = self.product / (self.half * self.half);
+        let product = if square < SLOPE_OFF * time_scale * time_scale {
+            0.0
+        } else {
+            self.product(simd, &local, load, way.state, half, count)
+        };
+        self.plan.prepare(simd, half, product, frequency);
+        let plan = &self.plan;
+        let slope = plan.slope;
         let mut guess = match &self.before {
-            Some(before) => before.continued(simd, plan),
-            None => [f64x4::splat(simd, local.acceleration_from(way.state)); 2],
+            Some(before) => before.continued(simd, plan, self.half, last_slope),
+            None => {
+                let State { position, rate } = way.state;
+                [local.acceleration(load, splat(position), splat(rate)); 2]
+            }
         };
         // Of the rate as of the position, in the motion's own units.
         let end_tolerance = (half / time_scale).min(1.0) * control.end_tolerance();
-        let square = half * half;
         let mut state = way.state;
         let mut left = count;
         // Steps since the load was taken.
@@ -254,15 +218,14 @@ impl EndpointSteps {
             let scale = state.position.abs();
             let tolerance = IterationTolerance::new(LEFT * end_tolerance * scale, scale);
             let offset = plan.offset(simd, taken * length);
-            let loads = if alternates {
-                let sine = plan.sine(simd, phase);
-                [
-                    local.load_with_sine(offset[0], sine[0]),
-                    local.load_with_sine(offset[1], sine[1]),
-                ]
-            } else {
-                [local.load(offset[0]), local.load(offset[1])]
+            let sine = match alternates {
+                true => plan.sine(simd, phase),
+                false => [splat(0.0); 2],
             };
+            let loads = [
+                local.load_with_sine(offset[0], sine[0]),
+                local.load_with_sine(offset[1], sine[1]),
+            ];
             let solved = solve(
                 simd,
                 plan,
@@ -345,22 +308,37 @@ impl EndpointSteps {
                 way.now = way.now.add(Double::new(length).scale(taken));
                 taken = 0.0;
                 local = equation.at(&way.time());
-                let positions = shifted(displacement, state.position - moved);
-                (self.slope, self.states) =
-                    averaged(simd, &local, state.rate, positions, self.slope, self.states);
                 if let Some([_, angle]) = local.harmonic() {
                     phase = sine_and_cosine(simd, angle);
                 }
+                let load = local.load_with_sine(splat(0.0), splat(phase[0]));
+                let positions = shifted(displacement, state.position - moved);
+                (self.slope, self.states) = averaged(
+                    simd,
+                    &local,
+                    load,
+                    state.rate,
+                    positions,
+                    self.slope,
+                    self.states,
+                );
             } else if alternates {
                 phase = plan.turned(phase);
             }
             guess = plan.ahead(simd, g, moved);
         };
         self.iterations = self.iterations.min(MOST_ITERATIONS);
+        way.now = way.now.add(Double::new(length).scale(taken));
         if let Some((g, displacement, moved)) = last {
+            if end == Some(End::Reached) {
+                // What rounding has left of the way.
+                let rest = way.target.since(way.now);
+                state.position += rest * state.rate;
+                state.rate += rest * (plan.last(simd, g) + slope * moved);
+                way.now = way.target;
+            }
+            (self.half, self.product) = (half, product);
             self.before = Some(Before {
-                half,
-                product,
                 moved,
                 g: unpair(g),
                 displacement: unpair(displacement),
@@ -370,10 +348,6 @@ impl EndpointSteps {
             self.before = None;
         }
         way.state = state;
-        way.now = way.now.add(Double::new(length).scale(taken));
-        if end == Some(End::Reached) {
-            way.round_off(equation);
-        }
         end
     }
 
@@ -383,12 +357,13 @@ impl EndpointSteps {
         &mut self,
         simd: S,
         local: &L,
+        load: L::Load<f64x4<S>>,
         state: State,
         half: f64,
         count: f64,
     ) -> f64 {
-        let of_this_length = self.before.is_some_and(|before| before.half == half);
-        if self.states == 0.0 || !of_this_length {
+        let of_this_length = self.half == half;
+        if self.states == 0.0 || self.before.is_none() || !of_this_length {
             let positions = match &self.before {
                 Some(before) => shifted(
                     pair(simd, &before.displacement),
@@ -396,15 +371,24 @@ impl EndpointSteps {
                 ),
                 None => [f64x4::splat(simd, state.position); 2],
             };
-            (self.slope, self.states) =
-                averaged(simd, local, state.rate, positions, self.slope, self.states);
+            (self.slope, self.states) = averaged(
+                simd,
+                local,
+                load,
+                state.rate,
+                positions,
+                self.slope,
+                self.states,
+            );
         }
         let wanted = (half * half * self.slope).clamp(-STEEPEST, 0.0);
-        match self.before {
+        if (self.product - wanted).abs() < SLOPE_OFF {
             // Matrices that are there serve another length too, with a slope that fits it.
-            Some(before) if (before.product - wanted).abs() < SLOPE_OFF => before.product,
-            _ if wanted > -SLOPE_OFF || !of_this_length && count < FEW => 0.0,
-            _ => wanted,
+            self.product
+        } else if wanted > -SLOPE_OFF || !of_this_length && count < FEW {
+            0.0
+        } else {
+            wanted
         }
     }
 }

@@ -15,6 +15,8 @@
     reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
 )]
 
+use std::f64::consts::FRAC_PI_2;
+
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::matrix::{diagonals, quotient, rows, sum};
@@ -151,17 +153,19 @@ impl Plan {
         }
         self.half = half;
         self.frequency = frequency;
-        let quarter = f64x4::splat(simd, std::f64::consts::FRAC_PI_2);
         let offset = scaled(pair(simd, &TABLE.place), half);
-        let mut turn = [offset; 2];
-        for k in 0..2 {
-            let angle = offset[k] * frequency;
-            turn[0][k] = angle.sin();
-            turn[1][k] = (angle + quarter).sin();
-        }
         self.offset = unpair(offset);
-        self.turn = [unpair(turn[0]), unpair(turn[1])];
-        self.turn_end = sine_and_cosine(simd, 2.0 * half * frequency);
+        if frequency != 0.0 {
+            let mut turns = [[0.0; NODES]; 3];
+            turns[0] = unpair(scaled(offset, frequency));
+            turns[1] = unpair(shifted(pair(simd, &turns[0]), FRAC_PI_2));
+            let whole = 2.0 * half * frequency;
+            turns[2][..2].copy_from_slice(&[whole, whole + FRAC_PI_2]);
+            sines(simd.level(), &mut turns.as_flattened_mut()[..2 * NODES + 4]);
+            let [sine, cosine, [by_sine, by_cosine, ..]] = turns;
+            self.turn = [sine, cosine];
+            self.turn_end = [by_sine, by_cosine];
+        }
     }
 
     /// The matrices of steps of this length from those of steps whose half is 1.
@@ -221,6 +225,14 @@ impl Plan {
     pub fn ahead<S: Simd>(&self, simd: S, g: Pair<S>, moved: f64) -> Pair<S> {
         let shift = f64x4::splat(simd, self.slope * moved);
         multiply(simd, &TABLE.ahead, &both_permuted(g), [shift; 2])
+    }
+
+    /// g at the end.
+    #[inline(always)]
+    pub fn last<S: Simd>(&self, simd: S, g: Pair<S>) -> f64 {
+        let [low, high] = pair(simd, &TABLE.last);
+        let sums = Lanes::<S, 4>::store(high.mul_add(g[1], low * g[0]));
+        (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
 
     /// g at the nodes, from its values at the nodes of a step before of half the length `before`.
@@ -354,11 +366,20 @@ pub fn largest<S: Simd>([low, high]: Pair<S>) -> f64 {
 /// Sine and cosine of an angle.
 #[inline(always)]
 pub fn sine_and_cosine<S: Simd>(simd: S, angle: f64) -> [f64; 2] {
-    let quarter = std::f64::consts::FRAC_PI_2;
-    let both = load(simd, &[angle, angle + quarter, 0.0, 0.0]).sin();
-    let mut values = [0.0; 4];
-    both.store_slice(&mut values);
+    let mut values = [angle, angle + FRAC_PI_2, 0.0, 0.0];
+    sines(simd.level(), &mut values);
     [values[0], values[1]]
+}
+
+/// Takes the sine of each of the angles, whose number is a multiple of 4: in a function of its own,
+/// since it is long and not hot.
+#[inline(never)]
+fn sines(level: Level, angles: &mut [f64]) {
+    dispatch!(level, simd => {
+        for four in angles.chunks_exact_mut(4) {
+            load(simd, four).sin().store_slice(four);
+        }
+    });
 }
 
 #[cfg(test)]

@@ -97,18 +97,19 @@ pub fn stays_between<S: Simd>(
     position + down - beyond > lowest && position + up + beyond < highest
 }
 
-/// ∂f/∂x over the last states, these positions too, and over how many.
+/// ∂f/∂x over the last states, these positions under this load too, and over how many.
 #[inline(always)]
 pub fn averaged<S: Simd, L: LocalEquation>(
     simd: S,
     local: &L,
+    load: L::Load<f64x4<S>>,
     rate: f64,
     positions: Pair<S>,
     mean: f64,
     states: f64,
 ) -> (f64, f64) {
     let [low, high] = positions;
-    let slope = slope(simd, local, rate, low) + slope(simd, local, rate, high);
+    let slope = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
     let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
     let states = (states + 1.0).min(AVERAGED);
     let next = mean + (slope - mean) / states;
@@ -117,10 +118,15 @@ pub fn averaged<S: Simd, L: LocalEquation>(
     (if next.is_finite() { next } else { 0.0 }, states)
 }
 
-/// ∂f/∂x at the begin, as if it were at these positions; its last digits do not matter.
+/// ∂f/∂x under this load at these positions; its last digits do not matter.
 #[inline(always)]
-fn slope<S: Simd, L: LocalEquation>(simd: S, local: &L, rate: f64, position: f64x4<S>) -> f64x4<S> {
-    let load = local.load(f64x4::splat(simd, 0.0));
+fn slope<S: Simd, L: LocalEquation>(
+    simd: S,
+    local: &L,
+    load: L::Load<f64x4<S>>,
+    rate: f64,
+    position: f64x4<S>,
+) -> f64x4<S> {
     let rate = f64x4::splat(simd, rate);
     let shift = position * f64x4::splat(simd, 1e-4);
     let above = local.acceleration(load, position + shift, rate);

@@ -47,6 +47,8 @@ pub struct Dense {
     pub plain: Matrices,
     /// The polynomial through the values at the nodes, one step of the same length later.
     pub ahead: Diagonals,
+    /// The value at the end from those at the nodes.
+    pub last: [f64; 8],
     /// For the value at each node: all Legendre coefficients.
     pub series: [[f64; 8]; 8],
 }
@@ -65,6 +67,7 @@ impl Dense {
                 ..Matrices::NONE
             },
             ahead: [[[0.0; 4]; 2]; N],
+            last: [0.0; N],
             series: [[0.0; N]; N],
         };
         let mut node = [Double::ZERO; N];
@@ -79,12 +82,16 @@ impl Dense {
             let p = legendre(node[j]);
             let weight = gauss_weight(node[j], &p, N);
             let mut share = [Double::ZERO; MOST_NODES];
+            let mut last = Double::ZERO;
             let mut k = 0;
             while k < N {
                 share[k] = weight.mul(p[k]).scale(0.5 * (2 * k + 1) as f64);
                 dense.series[j][k] = share[k].value();
+                // Legendre polynomials are 1 there.
+                last = last.add(share[k]);
                 k += 1;
             }
+            dense.last[j] = last.value();
             dense.place[j] = Double::ONE.add(node[j]).value();
             dense.plain.drift[j] = dense.place[j];
             let tilt = share[1].div(Double::new(3.0));
@@ -156,6 +163,8 @@ mod tests {
                 |row: usize| -> f64 { (0..8).map(|j| TABLE.plain.end[j][row] * values[j]).sum() };
             assert!((column(0) - twice(1.0)).abs() < 2e-15, "u^{n}");
             assert!((column(1) - once(1.0)).abs() < 2e-15, "u^{n}");
+            let last: f64 = (0..8).map(|j| TABLE.last[j] * values[j]).sum();
+            assert!((last - 1.0).abs() < 4e-15, "u^{n}: {last}");
             // P_0 to P_7 are all 1 at u = 1.
             let sum: f64 = (0..8)
                 .map(|k| -> f64 { (0..8).map(|j| TABLE.series[j][k] * values[j]).sum() })

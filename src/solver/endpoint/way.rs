@@ -1,7 +1,7 @@
 //! A way to go, and how far it was gone.
 
+use crate::solver::State;
 use crate::solver::double::Double;
-use crate::solver::{Equation, LocalEquation, State};
 
 /// A way to go.
 #[derive(Clone, Copy, Debug)]
@@ -24,20 +24,6 @@ impl Way {
     /// Present time of the model.
     pub fn time(&self) -> Double {
         self.begin.add(self.now)
-    }
-
-    /// Goes what rounding has left of the way.
-    #[inline(always)]
-    pub(super) fn round_off<E: Equation>(&mut self, equation: &E) {
-        let rest = self.target.since(self.now);
-        if rest != 0.0 {
-            let f = equation
-                .seen_from(&self.time())
-                .acceleration_from(self.state);
-            self.state.position += rest * self.state.rate;
-            self.state.rate += rest * f;
-            self.now = self.target;
-        }
     }
 }
 

@@ -28,7 +28,7 @@ mod validation;
 const LAST_BITS: f64 = 1e-18;
 
 /// How the steps of a kind of equation are solved, and what it carries along.
-pub trait Method: Copy + Debug + Serialize + DeserializeOwned {
+pub trait Method: Clone + Debug + Serialize + DeserializeOwned {
     /// Why a motion stops before the time asked for.
     type Event: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
     /// Where positions are counted from.

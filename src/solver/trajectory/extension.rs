@@ -1,8 +1,6 @@
 //! The next step of a motion, of the kind that what is asked for allows.
 
-use fearless_simd::Level;
-
-use super::{Kind, Steps, Trajectory};
+use super::Trajectory;
 use crate::solver::collocation::{Guess, Substep, Task, solve_by_16};
 use crate::solver::dense_output::{PAIRS, Segment};
 use crate::solver::double::Double;
@@ -12,11 +10,17 @@ use crate::solver::integrator::Mode;
 use crate::solver::iteration::Diverged;
 use crate::solver::limits::Limits;
 use crate::solver::short_step::{ShortStep, Trend};
-use crate::solver::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
+use crate::solver::step_control::{Accepted, HALVED, SHORTEST, first_accepted};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// First step in units of the motion's time scale.
 const FIRST_STEP: f64 = 2.0;
+
+/// Steps that take no longer than to look for an orbit.
+const FEW: f64 = 4.0;
+
+/// After a short step that was refused, the next 14 of its length are not tried.
+const FORGOTTEN: f64 = 1.05;
 
 /// Between the nodes the position misses less than this part of the last two Legendre
 /// coefficients: f is integrated twice, which divides degree 16 by some 16², and its series goes
@@ -25,24 +29,28 @@ const FIRST_STEP: f64 = 2.0;
 const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;
 
 impl Trajectory {
-    /// The kind of the steps that come next, where the motion is asked for after the time `rest`.
-    /// Steps without dense output are for where nothing but its end is, and they are shorter.
-    pub(super) fn next_kind<E: Equation>(&self, equation: &E, rest: f64) -> Kind {
+    /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
+    /// they are shorter, for where nothing but its end is.
+    pub(super) fn takes_endpoint_steps<E: Equation>(&self, equation: &E, rest: f64) -> bool {
         let steps = &self.method;
-        let alone = self.restarts_at_every_step;
-        let (kind, shorter) = if alone {
-            (Kind::SingleEndpoint, steps.single.are_shorter_than(rest))
-        } else {
-            (Kind::PlannedEndpoint, steps.endpoint.are_shorter_than(rest))
-        };
-        // So few take no longer than to look for an orbit.
-        let few = alone && steps.single.reach(rest);
-        let repeats = || steps.follows_orbits && equation.repeats();
-        if steps.takes_endpoint_steps && (few || shorter && !repeats()) {
-            kind
-        } else {
-            Kind::DenseOutput
+        if !steps.takes_endpoint_steps {
+            return false;
         }
+        let many = || steps.endpoint.are_shorter_than(rest) && !self.may_repeat(equation);
+        if !self.restarts_at_every_step {
+            many()
+        } else if self.control.repeated().is_loose() {
+            // A few take no longer than to look for an orbit.
+            steps.endpoint.reach(rest, FEW) || many()
+        } else {
+            // 16 nodes take less time than several steps.
+            steps.endpoint.reach(rest, 1.0)
+        }
+    }
+
+    /// Whether a motion that repeats is looked for.
+    fn may_repeat<E: Equation>(&self, equation: &E) -> bool {
+        self.method.follows_orbits && equation.repeats()
     }
 
     /// Makes the first step from the origin on in 4 nodes, if that is possible.
@@ -52,6 +60,12 @@ impl Trajectory {
         time: &Double,
         step: f64,
     ) -> bool {
+        if let Some(longest) = &mut self.method.longest_short_step
+            && step > *longest
+        {
+            *longest *= FORGOTTEN;
+            return false;
+        }
         if self.method.trend.is_none() {
             self.method.trend = Trend::first(equation, time, self.start, step);
         }
@@ -69,6 +83,7 @@ impl Trajectory {
         if !taken {
             // So that a guess that leads nowhere is not made again.
             self.method.trend = None;
+            self.method.longest_short_step = Some(0.5 * step);
         }
         taken
     }
@@ -82,14 +97,14 @@ impl Trajectory {
         }
     }
 
-    /// Follows the motion from the end of the last step toward `target` by steps that `go` takes,
-    /// keeping none of it, and moves the origin there. Returns by how much, and whether the next such
-    /// step would meet no limit and no extreme.
-    pub(super) fn go_to_end(
+    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
+    /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
+    /// extreme.
+    pub(super) fn go_to_end<E: Equation>(
         &mut self,
+        equation: &E,
         target: Double,
         budget: &mut u32,
-        go: impl FnOnce(&mut Steps, Level, StepControl, &mut Way) -> End,
     ) -> (Double, bool) {
         let begin = self.history.end();
         self.arrive(begin);
@@ -101,7 +116,13 @@ impl Trajectory {
             bounds: self.bounds(),
             budget: *budget,
         };
-        let end = go(&mut self.method, self.level, self.control, &mut way);
+        let control = if self.restarts_at_every_step {
+            self.control.repeated()
+        } else {
+            self.control
+        };
+        let steps = &mut self.method.endpoint;
+        let end = steps.go(self.level, equation, control, &mut way);
         *budget = way.budget;
         let shift = if end == End::Reached {
             target
@@ -119,7 +140,11 @@ impl Trajectory {
     /// The length of a step that was too short to go on.
     pub(super) fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
         let follows_orbits = self.method.follows_orbits;
-        let repeats = follows_orbits && equation.repeats();
+        let alone = self.restarts_at_every_step;
+        let few = alone && self.next_length.is_none_or(|length| rest < FEW * length);
+        let repeats = !few && self.may_repeat(equation);
+        // Nothing of a step that ends where the equation changes is asked for but its end.
+        let only_end = alone && !repeats && !self.records_extremes();
         let begin = self.history.end();
         let last = self.history.steps().last();
         let state = last.map_or(self.start, |step| step.segment.end());
@@ -137,12 +162,8 @@ impl Trajectory {
                 };
             }
         }
-        let most = if self.restarts_at_every_step {
-            rest
-        } else {
-            f64::INFINITY
-        };
-        let step = self.step(&local, state, repeats, most)?;
+        let most = if alone { rest } else { f64::INFINITY };
+        let step = self.step(&local, state, [repeats, only_end], most)?;
         // Steps are kept only while an orbit may still come out of them.
         let shift = self.push((), Segment::new(state, step.end, &step.series), repeats);
         let (lowest, highest) = step.reach().into_inner();
@@ -155,12 +176,12 @@ impl Trajectory {
     }
 
     /// Solves the next step with dense output, as long as the tolerance allows but no longer than
-    /// `most`.
+    /// `most`, for its end only or not.
     pub(super) fn step<L: LocalEquation>(
         &mut self,
         local: &L,
         state: State,
-        repeats: bool,
+        [repeats, only_end]: [bool; 2],
         most: f64,
     ) -> Result<Substep<PAIRS>, f64> {
         let control = if repeats || self.restarts_at_every_step {
@@ -197,10 +218,14 @@ impl Trajectory {
             if self.limits.are_left_behind_by(step.nodes()) {
                 return Err(HALVED);
             }
-            // Of the position, or of the rate where that is worse.
-            let short = (4.0 * time_scale / length).max(1.0);
-            let missed = short * step.tail() / NEGLECTED_BETWEEN_NODES;
-            let factor = control.judge(missed / scale, step.contraction)?;
+            let factor = if only_end {
+                control.judge_end(step.end_error() / scale, step.contraction)?
+            } else {
+                // Of the position, or of the rate where that is worse.
+                let short = (4.0 * time_scale / length).max(1.0);
+                let missed = short * step.tail() / NEGLECTED_BETWEEN_NODES;
+                control.judge(missed / scale, step.contraction)?
+            };
             Ok((step, factor))
         })?;
         // A step cut short says little about the next one.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::dense_output::History;
 use super::double::Double;
-use super::endpoint::{EndpointSteps, SingleSteps};
+use super::endpoint::EndpointSteps;
 use super::integrator::{Integrator, Method};
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
@@ -18,19 +18,8 @@ use super::{Equation, State};
 mod extension;
 mod substeps;
 
-/// The kinds of steps beside short ones.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    /// With 16 nodes and dense output.
-    DenseOutput,
-    /// Of which only the end is asked for, many of one length.
-    PlannedEndpoint,
-    /// Of which only the end is asked for, before the equation changes.
-    SingleEndpoint,
-}
-
 /// What each kind of steps leaves for the next of its kind.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Steps {
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
@@ -38,10 +27,10 @@ pub struct Steps {
     takes_endpoint_steps: bool,
     /// What f was in the last short step.
     trend: Option<Trend>,
+    /// Longer short steps are not tried: one was refused of late.
+    longest_short_step: Option<f64>,
     /// Where communication points lie far apart.
     endpoint: EndpointSteps,
-    /// Where, moreover, the equation changes at each of them.
-    single: SingleSteps,
 }
 
 impl Method for Steps {
@@ -50,7 +39,7 @@ impl Method for Steps {
     const MOST_STEPS: u32 = 2_000_000;
 
     fn is_valid(&self, _: &Trajectory) -> bool {
-        self.endpoint.are_valid() && self.single.are_valid()
+        self.longest_short_step.is_none_or(|length| length > 0.0) && self.endpoint.are_valid()
     }
 }
 
@@ -66,8 +55,8 @@ impl Trajectory {
             follows_orbits: true,
             takes_endpoint_steps: true,
             trend: None,
-            endpoint: EndpointSteps::NONE,
-            single: SingleSteps::NONE,
+            longest_short_step: None,
+            endpoint: EndpointSteps::none(),
         };
         Trajectory::with_method(History::empty(), steps, start, limits, tolerance)
     }
@@ -106,7 +95,6 @@ impl Trajectory {
             return;
         }
         self.method.endpoint.restart();
-        self.method.single.restart();
         self.start_from_present();
     }
 
@@ -139,25 +127,11 @@ impl Trajectory {
         let mut unobstructed = true;
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
-            let kind = match unobstructed {
-                true => motion.next_kind(equation, rest),
-                false => Kind::DenseOutput,
-            };
-            let (shift, free) = match kind {
-                Kind::DenseOutput => {
-                    *budget -= 1;
-                    (motion.extend(equation, rest)?, true)
-                }
-                Kind::PlannedEndpoint => {
-                    motion.go_to_end(target, budget, |steps, level, control, way| {
-                        steps.endpoint.go(level, equation, control, way)
-                    })
-                }
-                Kind::SingleEndpoint => {
-                    motion.go_to_end(target, budget, |steps, level, control, way| {
-                        steps.single.go(level, equation, control.repeated(), way)
-                    })
-                }
+            let (shift, free) = if unobstructed && motion.takes_endpoint_steps(equation, rest) {
+                motion.go_to_end(equation, target, budget)
+            } else {
+                *budget -= 1;
+                (motion.extend(equation, rest)?, true)
             };
             unobstructed = free;
             Ok(shift)

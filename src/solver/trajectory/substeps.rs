@@ -22,7 +22,7 @@ impl Trajectory {
         self.stand_at(*clock, state);
         let local = equation.seen_from(clock);
         let substep = self
-            .step(&local, state, true, most)
+            .step(&local, state, [true, false], most)
             .map_err(|length| Failure::SubstepTooShort { length, after: 0.0 })?;
         let mut segment = Segment::new(state, substep.end, &substep.series);
         segment.expand();
