@@ -10,12 +10,6 @@ from dielectric_actuator import Actuator, FMICallException, UnknownName, frame, 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
 
 
-@pytest.fixture(scope="module")
-def actuator():
-    with Actuator() as actuator:
-        yield actuator
-
-
 def test_a_run_has_a_row_for_each_communication_point(actuator):
     response = actuator.run({"phi": 0.3}, stop_time=1.0, communication_step=0.3, outputs=["lambda", "pulled_in"])
     assert response["time"].tolist() == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])

@@ -7,15 +7,9 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dielectric_actuator import Actuator, Collapse, UnknownName, ensemble, grid, native, sensitivities
+from dielectric_actuator import Collapse, UnknownName, ensemble, grid, native, sensitivities
 
 SURFACE_EFFECTS = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2}
-
-
-@pytest.fixture(scope="module")
-def actuator():
-    with Actuator() as actuator:
-        yield actuator
 
 
 def test_the_names_are_those_of_the_fmu(actuator):
