@@ -32,8 +32,8 @@ pub fn run(case: &Case, least: Duration) {
     };
     let exact = one(1e-14);
     for tolerance in TOLERANCES {
-        let ways: [(&str, &dyn Fn(f64) -> Vec<Outcome>); 2] =
-            [("ours, ensemble", &many), ("ours, one by one", &one)];
+        type Follow<'a> = &'a dyn Fn(f64) -> Vec<Outcome>;
+        let ways: [(&str, Follow); 2] = [("ours, ensemble", &many), ("ours, one by one", &one)];
         for (method, follow) in ways {
             let error = error(&follow(tolerance), &exact);
             assert!(error < 1e-3, "{method} at {tolerance:e}: error {error:e}");

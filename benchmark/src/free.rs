@@ -62,7 +62,7 @@ fn sweep(method: &Method, case: &Case, least: Duration) {
         row.error = Some(error);
         // 1e-12: what rounding the parameters alone may do to a case, with room.
         let bound = (method.allowed * tolerance + 1e-12).min(LOST);
-        if !(error <= bound) {
+        if error.is_nan() || error > bound {
             row.note = format!("not timed: error above {bound:.1e}");
             row.print();
             continue;

@@ -23,6 +23,14 @@ unsafe extern "C" fn silent(
 
 /// Callbacks of a host that is not interested.
 pub fn callbacks() -> fmi2CallbackFunctions {
+    type Logger = unsafe extern "C" fn(
+        *mut c_void,
+        *const c_char,
+        fmi2Status,
+        *const c_char,
+        *const c_char,
+        ...
+    );
     unsafe extern "C" fn allocate(count: usize, size: usize) -> *mut c_void {
         // SAFETY: plain C.
         unsafe { libc::calloc(count, size) }
@@ -41,7 +49,7 @@ pub fn callbacks() -> fmi2CallbackFunctions {
         );
     fmi2CallbackFunctions {
         // SAFETY: a callee on these platforms may ignore variadic arguments.
-        logger: Some(unsafe { std::mem::transmute::<*const (), _>(named as *const ()) }),
+        logger: Some(unsafe { std::mem::transmute::<*const (), Logger>(named as *const ()) }),
         allocateMemory: Some(allocate),
         freeMemory: Some(free),
         stepFinished: None,
