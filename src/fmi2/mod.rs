@@ -23,11 +23,11 @@
 mod calls;
 mod envelope;
 mod exchange;
-mod export;
 pub mod float_environment;
 mod guard;
 mod host;
 mod lifecycle;
+mod signatures;
 mod state;
 mod status;
 
@@ -37,9 +37,9 @@ use crate::instance::{Instance, Type};
 use crate::model::Model;
 use calls::Call;
 pub use exchange::*;
-pub use export::EXPORTED_NAMES;
 use guard::{done_at_once, guarded, guarded_in_place, readable, slice, slice_mut, writable};
 pub use lifecycle::*;
+pub use signatures::EXPORTED_NAMES;
 pub use state::*;
 pub use status::*;
 
@@ -356,4 +356,34 @@ pub unsafe extern "C" fn fmi2DoStep<M: Model>(
             .instance
             .do_step(currentCommunicationPoint, communicationStepSize)
     })
+}
+
+// ---- Export ----
+
+/// Defines the C functions of FMI 2.0 for a model: all that the crate of an FMU needs.
+#[macro_export]
+macro_rules! export_fmi2 {
+    ($model:ty) => {
+        use $crate::fmi2::c::*;
+
+        $crate::fmi2_functions!($crate::define_fmi2; $model);
+    };
+}
+
+#[doc(hidden)]
+#[macro_export]
+macro_rules! define_fmi2 {
+    ($model:ty; $($name:ident: $type:ident = ($($argument:ident: $of:ty),* $(,)?) $(-> $result:ty)?;)*) => {$(
+        /// The function of the standard.
+        ///
+        /// # Safety
+        /// The host owes what FMI 2.0 says.
+        #[unsafe(no_mangle)]
+        pub unsafe extern "C" fn $name($($argument: $of),*) $(-> $result)? {
+            // SAFETY: the host's promise, passed on.
+            unsafe { $crate::fmi2::$name::<$model>($($argument),*) }
+        }
+
+        const _: $type = Some($name);
+    )*};
 }

@@ -6,17 +6,35 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::dense_output::History;
+use super::collocation::{Guess, Substep, Task, solve_by_16};
+use super::dense_output::{History, PAIRS, Segment};
 use super::double::Double;
-use super::endpoint::EndpointSteps;
-use super::integrator::{Integrator, Method};
+use super::endpoint::{End, EndpointSteps, Way};
+use super::extremes::Extremes;
+use super::integrator::{Integrator, Method, Mode};
+use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
-use super::short_step::Trend;
-use super::{Equation, State};
+use super::short_step::{ShortStep, Trend};
+use super::step_control::{Accepted, HALVED, SHORTEST, first_accepted};
+use super::{Equation, LocalEquation, State};
 
-mod extension;
 mod substeps;
+
+/// First step in units of the motion's time scale.
+const FIRST_STEP: f64 = 2.0;
+
+/// Steps that take no longer than to look for an orbit.
+const FEW: f64 = 4.0;
+
+/// After a short step that was refused, the next 14 of its length are not tried.
+const FORGOTTEN: f64 = 1.05;
+
+/// Between the nodes the position misses less than this part of the last two Legendre
+/// coefficients: f is integrated twice, which divides degree 16 by some 16², and its series goes
+/// on falling. Measured on DC and AC motions with steps of 6 to 14: 5 to 18 times less, which
+/// leaves room for the rate, whose error is larger by the inverse of the motion's time scale.
+const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;
 
 /// What each kind of steps leaves for the next of its kind.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -136,5 +154,208 @@ impl Trajectory {
             unobstructed = free;
             Ok(shift)
         })
+    }
+
+    /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
+    /// they are shorter, for where nothing but its end is.
+    fn takes_endpoint_steps<E: Equation>(&self, equation: &E, rest: f64) -> bool {
+        let steps = &self.method;
+        if !steps.takes_endpoint_steps {
+            return false;
+        }
+        let many = || steps.endpoint.are_shorter_than(rest) && !self.may_repeat(equation);
+        if !self.restarts_at_every_step {
+            many()
+        } else if self.control.repeated().is_loose() {
+            // A few take no longer than to look for an orbit.
+            steps.endpoint.reach(rest, FEW) || many()
+        } else {
+            // 16 nodes take less time than several steps.
+            steps.endpoint.reach(rest, 1.0)
+        }
+    }
+
+    /// Whether a motion that repeats is looked for.
+    fn may_repeat<E: Equation>(&self, equation: &E) -> bool {
+        self.method.follows_orbits && equation.repeats()
+    }
+
+    /// Makes the first step from the origin on in 4 nodes, if that is possible.
+    fn takes_short_step<E: Equation>(&mut self, equation: &E, time: &Double, step: f64) -> bool {
+        if let Some(longest) = &mut self.method.longest_short_step
+            && step > *longest
+        {
+            *longest *= FORGOTTEN;
+            return false;
+        }
+        if self.method.trend.is_none() {
+            self.method.trend = Trend::first(equation, time, self.start, step);
+        }
+        let bounds = self.bounds();
+        let Some(trend) = &mut self.method.trend else {
+            return false;
+        };
+        let short = ShortStep {
+            time,
+            length: step,
+            bounds,
+        };
+        let control = self.control.repeated();
+        let taken = short.take(self.level, equation, control, &mut self.start, trend);
+        if !taken {
+            // So that a guess that leads nowhere is not made again.
+            self.method.trend = None;
+            self.method.longest_short_step = Some(0.5 * step);
+        }
+        taken
+    }
+
+    /// The positions between which nothing happens.
+    fn bounds(&self) -> (f64, f64) {
+        let Limits { lower, upper } = self.limits;
+        match self.extremes() {
+            Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
+            None => (lower, upper),
+        }
+    }
+
+    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
+    /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
+    /// extreme.
+    fn go_to_end<E: Equation>(
+        &mut self,
+        equation: &E,
+        target: Double,
+        budget: &mut u32,
+    ) -> (Double, bool) {
+        let begin = self.history.end();
+        self.arrive(begin);
+        let mut way = Way {
+            begin: self.time_origin.add(begin),
+            now: Double::ZERO,
+            state: self.state(),
+            target: target.sub(begin),
+            bounds: self.bounds(),
+            budget: *budget,
+        };
+        let control = if self.restarts_at_every_step {
+            self.control.repeated()
+        } else {
+            self.control
+        };
+        let steps = &mut self.method.endpoint;
+        let end = steps.go(self.level, equation, control, &mut way);
+        *budget = way.budget;
+        let shift = if end == End::Reached {
+            target
+        } else {
+            begin.add(way.now)
+        };
+        self.stand_at(way.time(), way.state);
+        (shift, end != End::Blocked)
+    }
+
+    /// Adds one more step with dense output; `rest` is the time still asked for. Returns by how
+    /// much the origin of time was moved.
+    ///
+    /// # Errors
+    /// The length of a step that was too short to go on.
+    fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
+        let follows_orbits = self.method.follows_orbits;
+        let alone = self.restarts_at_every_step;
+        let few = alone && self.next_length.is_none_or(|length| rest < FEW * length);
+        let repeats = !few && self.may_repeat(equation);
+        // Nothing of a step that ends where the equation changes is asked for but its end.
+        let only_end = alone && !repeats && !self.records_extremes();
+        let begin = self.history.end();
+        let last = self.history.steps().last();
+        let state = last.map_or(self.start, |step| step.segment.end());
+        let local = equation.seen_from(&self.time_origin.add(begin));
+        if self.history.is_empty() && state.rate == 0.0 {
+            let rests = follows_orbits && equation.is_autonomous();
+            if rests && local.acceleration_from(state) == 0.0 {
+                self.mode = Mode::AtRest;
+                return Ok(Double::ZERO);
+            }
+            if repeats {
+                self.mode = Mode::Dense {
+                    first_turn: Some(Double::ZERO),
+                    stop: None,
+                };
+            }
+        }
+        let most = if alone { rest } else { f64::INFINITY };
+        let step = self.step(&local, state, [repeats, only_end], most)?;
+        // Steps are kept only while an orbit may still come out of them.
+        let shift = self.push((), Segment::new(state, step.end, &step.series), repeats);
+        let (lowest, highest) = step.reach().into_inner();
+        let stop = self.first_contact(lowest, highest);
+        self.stop_in_last_step(stop);
+        if repeats {
+            self.look_for_turn();
+        }
+        Ok(shift)
+    }
+
+    /// Solves the next step with dense output, as long as the tolerance allows but no longer than
+    /// `most`, for its end only or not.
+    fn step<L: LocalEquation>(
+        &mut self,
+        local: &L,
+        state: State,
+        [repeats, only_end]: [bool; 2],
+        most: f64,
+    ) -> Result<Substep<PAIRS>, f64> {
+        let control = if repeats || self.restarts_at_every_step {
+            self.control.repeated()
+        } else {
+            self.control
+        };
+        let scale = state.position.abs();
+        let time_scale = local.time_scale(state);
+        let free = match self.next_length {
+            Some(length) => length,
+            None => FIRST_STEP * time_scale,
+        };
+        let most = most.min(local.longest_substep());
+        let shortest = (SHORTEST * free).min(0.5 * most);
+        let last = self.history.steps().last();
+        let before = last.map(|step| step.segment.series());
+        let Accepted {
+            step,
+            length,
+            factor,
+        } = first_accepted(free.min(most), shortest, |length| {
+            let task = Task {
+                start: state,
+                length,
+                tolerance: control.iteration_tolerance(scale, FIRST_STEP * length / free),
+                guess: match &before {
+                    Some(before) => Guess::Before(before),
+                    None => Guess::Begin(local.acceleration_from(state)),
+                },
+                contraction: 1.0,
+            };
+            let step = solve_by_16(self.level, local, &task).map_err(|Diverged| HALVED)?;
+            if self.limits.are_left_behind_by(step.nodes()) {
+                return Err(HALVED);
+            }
+            let factor = if only_end {
+                control.judge_end(step.end_error() / scale, step.contraction)?
+            } else {
+                // Of the position, or of the rate where that is worse.
+                let short = (4.0 * time_scale / length).max(1.0);
+                let missed = short * step.tail() / NEGLECTED_BETWEEN_NODES;
+                control.judge(missed / scale, step.contraction)?
+            };
+            Ok((step, factor))
+        })?;
+        // A step cut short says little about the next one.
+        self.next_length = Some(if length == most {
+            free
+        } else {
+            length * factor
+        });
+        Ok(step)
     }
 }

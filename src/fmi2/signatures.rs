@@ -1,5 +1,5 @@
-//! The functions of the standard as a shared library exports them: one list of their names and
-//! signatures, held by the compiler against the bindings of the header.
+//! The names and signatures of the functions of the standard, in one list that the compiler holds
+//! against the bindings of the header.
 
 use fmi::fmi2::binding::*;
 
@@ -221,34 +221,6 @@ macro_rules! fmi2_functions {
             ) -> fmi2Status;
         }
     };
-}
-
-/// Defines the C functions of FMI 2.0 for a model: all that the crate of an FMU needs.
-#[macro_export]
-macro_rules! export_fmi2 {
-    ($model:ty) => {
-        use $crate::fmi2::c::*;
-
-        $crate::fmi2_functions!($crate::define_fmi2; $model);
-    };
-}
-
-#[doc(hidden)]
-#[macro_export]
-macro_rules! define_fmi2 {
-    ($model:ty; $($name:ident: $type:ident = ($($argument:ident: $of:ty),* $(,)?) $(-> $result:ty)?;)*) => {$(
-        /// The function of the standard.
-        ///
-        /// # Safety
-        /// The host owes what FMI 2.0 says.
-        #[unsafe(no_mangle)]
-        pub unsafe extern "C" fn $name($($argument: $of),*) $(-> $result)? {
-            // SAFETY: the host's promise, passed on.
-            unsafe { $crate::fmi2::$name::<$model>($($argument),*) }
-        }
-
-        const _: $type = Some($name);
-    )*};
 }
 
 macro_rules! listed {
