@@ -5,7 +5,7 @@
 //! than 4 nodes, whose end is of order 8. They fit one register, so that, unlike in
 //! [`super::collocation`], nothing is gained by folding them into pairs.
 //!
-//! Gain over an endpoint-only step of 8 nodes: two thirds of the instructions, the restart and the host's call included.
+//! Gain over an endpoint-only step of 8 nodes: two thirds of the time (58 ns beside 189, the voltage set at each step, AVX2).
 
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
@@ -50,6 +50,8 @@ pub struct Trend {
     rise: f64,
     /// Both parts of the load at the end.
     load: [f64; 2],
+    /// The sine of what alternates in it there.
+    sine: f64,
     /// ∂f/∂load at the begin.
     response: [f64; 2],
 }
@@ -73,6 +75,7 @@ impl Trend {
             end: local.acceleration_from(state),
             rise: 0.0,
             load: L::parts(local.load(0.0)),
+            sine: local.harmonic().map_or(0.0, |[_, angle]| angle.sin()),
             response: local.sensitivity(state).load,
         }
     }
@@ -121,6 +124,7 @@ impl ShortStep<'_> {
             end: solved.f[1],
             rise: solved.f[1] - solved.f[0],
             load: solved.load,
+            sine: solved.sine,
             response: solved.response,
         };
         Some(())
@@ -166,8 +170,9 @@ struct Solved {
     end: State,
     /// f at its begin and there.
     f: [f64; 2],
-    /// Both parts of the load at its end.
+    /// Both parts of the load at its end, and the sine of what alternates in it.
     load: [f64; 2],
+    sine: f64,
     /// ∂f/∂load at its begin.
     response: [f64; 2],
     /// By how much the Legendre coefficients of f, degree by degree, can move the
@@ -205,25 +210,6 @@ impl Solved {
     }
 }
 
-/// Both parts of the load at the begin of a step and at its end.
-#[inline(always)]
-fn load_at_ends<S: Simd, L: LocalEquation>(
-    simd: S,
-    local: &L,
-    length: f64,
-    load: L::Load<f64x4<S>>,
-) -> [[f64; 2]; 2] {
-    if local.load_frequency() == 0.0 {
-        return [0.0, length].map(|offset| L::parts(local.load(offset)));
-    }
-    // From the nodes, since each sine takes as long as half an iteration.
-    let [one, other] = L::parts(load);
-    let ends = |part: f64x4<S>| -> f64x4<S> { product(simd, &GAUSS_4.end, &part.store()) };
-    let [_, _, one_end, one_begin] = Lanes::<S, 4>::store(ends(one));
-    let [_, _, other_end, other_begin] = Lanes::<S, 4>::store(ends(other));
-    [[one_begin, other_begin], [one_end, other_end]]
-}
-
 /// Solves a step after one with this `trend`. Nothing where it is too long or the iteration
 /// does not converge.
 #[inline(always)]
@@ -241,10 +227,15 @@ fn solve<S: Simd, L: LocalEquation>(
 
     let place: f64x4<S> = Lanes::load(simd, &GAUSS_4.place);
     let offset = place * fill(half);
-    let load = local.load(offset);
+    let sine = match local.harmonic() {
+        Some([frequency, angle]) => offset.mul_add(fill(frequency), fill(angle)).sin(),
+        None => fill(0.0),
+    };
+    let load = local.load_with_sine(offset, sine);
     let line = offset.mul_add(fill(start.rate), fill(start.position));
     // Of an f that jumps as the load does and then rises evenly.
-    let [load_at_begin, load_at_end] = load_at_ends(simd, local, length, load);
+    // By the sine at the end of the last step, since that of this one is waited for.
+    let load_at_begin = L::parts(local.load_with_sine(0.0, trend.sine));
     let [one, other] = [0, 1].map(|k| load_at_begin[k] - trend.load[k]);
     let first = trend.end + (one * trend.response[0] + other * trend.response[1]);
     let gain = offset * place.mul_add(fill(trend.rise * 0.25), fill(first));
@@ -290,6 +281,14 @@ fn solve<S: Simd, L: LocalEquation>(
             }
         }
     }
+    // From the nodes, since another sine takes as long as half an iteration.
+    let sine = if local.load_frequency() == 0.0 {
+        0.0
+    } else {
+        let ends: f64x4<S> = product(simd, &GAUSS_4.end, &sine.store());
+        let [_, _, end, _] = Lanes::<S, 4>::store(ends);
+        end
+    };
     let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
     let added: f64x4<S> = product(simd, &GAUSS_4.end, &f);
     let weight: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
@@ -299,7 +298,8 @@ fn solve<S: Simd, L: LocalEquation>(
     Some(Solved {
         end: State { position, rate },
         f: [first, last],
-        load: load_at_end,
+        load: L::parts(local.load_with_sine(length, sine)),
+        sine,
         response,
         size: Lanes::<S, 4>::abs(series * fill(square)).store(),
         part,
