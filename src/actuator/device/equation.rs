@@ -85,7 +85,8 @@ impl<P: Parameter> Permittivity<P> {
         P: ParameterOf<N>,
     {
         let number = |value: f64| stretch.same(value);
-        let [k1, k2, k3] = self.terms.map(|term| term.lift(stretch));
+        let [k1, k2, k3] = self.terms;
+        let [k1, k2, k3] = [k1.lift(stretch), k2.lift(stretch), k3.lift(stretch)];
         let x = stretch - number(1.0);
         let value = k3.mul_add(x, k2).mul_add(x, k1).mul_add(x, number(1.0));
         let slope = (number(3.0) * k3)

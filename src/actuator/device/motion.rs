@@ -79,11 +79,6 @@ impl CoupledEquation for DeviceMotion {
         self.device.damping.is_none() && self.states() == 0
     }
 
-    /// Damping and branches may relax at any rate, and the charge does with a small resistance.
-    fn is_stiff(&self) -> bool {
-        !self.device.damping.is_none() || self.states() > 0
-    }
-
     fn awaits_event(&self) -> bool {
         self.device.breakdown.is_some()
     }
@@ -229,11 +224,15 @@ impl LocalCoupledEquation for LocalDevice<'_> {
         for place in 0..self.device.present_branches().count() {
             internal[first + place] = stage.internal[first + place].abs();
         }
+        let energy = self.energy_size(stage, charge, frequency);
+        let stretch = self.stretch(stage.position);
+        let inertia = self.device.sheet.aspect + 2.0 * stretch.powi(-6);
         Sizes {
             position,
             rate: position * frequency,
             internal,
-            integrals: self.energy_size(stage, charge, frequency),
+            integrals: energy,
+            swing: (energy / inertia).sqrt() / frequency,
         }
     }
 

@@ -14,7 +14,9 @@
 //! along the motion (energies supplied and lost) do not act back; they are summed up once the
 //! stages are known.
 
+mod newton;
 mod polynomials;
+mod row;
 mod rule;
 mod stage_values;
 pub mod stages;
@@ -76,6 +78,9 @@ pub struct Sizes {
     pub internal: [f64; MOST_STATES],
     /// Of the integrals, all alike.
     pub integrals: f64,
+    /// How far the motion swings with the energy that it has: where integrals are summed up, that
+    /// energy is to be as accurate as they are.
+    pub swing: f64,
 }
 
 /// A system of one second-order equation and some of first order.
@@ -102,9 +107,6 @@ pub trait CoupledEquation {
     fn is_time_reversible(&self) -> bool {
         false
     }
-
-    /// Whether anything may relax faster than the motion goes, so that Radau nodes are needed.
-    fn is_stiff(&self) -> bool;
 
     /// Whether an event besides the limits of the position is awaited.
     fn awaits_event(&self) -> bool {

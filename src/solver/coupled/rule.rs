@@ -8,7 +8,10 @@
 //!
 //! The right Radau nodes are the zeros of P_{N−1} − P_N. The last one is the end of the step,
 //! and the method is stiffly accurate (L-stable): what decays much faster than the step is long
-//! is gone at its end, where Gauss nodes keep it for ever with alternating sign.
+//! is gone at its end, where Gauss nodes keep it for ever with alternating sign. There the rate is integrated
+//! from its own values at the nodes, as that of a system of first order: with the slope integrated twice in closed form, its
+//! value at the begin would count too, and what an overdamped motion has forgotten would stay (1.6 % less a step instead
+//! of 99 %, where the step is 200 times as long as the relaxation).
 //!
 //! Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed.,
 //! section IV.5. Each entry is computed in double-length arithmetic and rounded once.
@@ -28,7 +31,8 @@ pub struct Rule<const N: usize> {
     pub place: [f64; N],
     /// The once integrated slope at the nodes.
     pub once: Columns<N>,
-    /// The twice integrated slope at the nodes.
+    /// The twice integrated slope at the nodes: with Gauss nodes in closed form, with Radau nodes as
+    /// `once` of `once`.
     pub twice: Columns<N>,
     /// Its Legendre coefficients.
     pub series: Columns<N>,
@@ -58,7 +62,7 @@ impl<const N: usize> Rule<N> {
             weights[i] = gauss_weight(nodes[i], &legendre(nodes[i]), N);
             i += 1;
         }
-        Rule::new(&nodes, &weights)
+        Rule::new(&nodes, &weights, true)
     }
 
     const fn radau() -> Rule<N> {
@@ -74,10 +78,10 @@ impl<const N: usize> Rule<N> {
             weights[i] = nodes[i].add(Double::ONE).div(size.mul(size));
             i += 1;
         }
-        Rule::new(&nodes, &weights)
+        Rule::new(&nodes, &weights, false)
     }
 
-    const fn new(nodes: &[Double; N], weights: &[Double; N]) -> Rule<N> {
+    const fn new(nodes: &[Double; N], weights: &[Double; N], closed: bool) -> Rule<N> {
         let mut rule = Rule {
             place: [0.0; N],
             once: [[0.0; N]; N],
@@ -97,6 +101,7 @@ impl<const N: usize> Rule<N> {
             }
             i += 1;
         }
+        let mut exact = [[Double::ZERO; N]; N];
         let mut j = 0;
         while j < N {
             let p = legendre(nodes[j]);
@@ -109,8 +114,24 @@ impl<const N: usize> Rule<N> {
             }
             let mut i = 0;
             while i < N {
-                rule.once[j][i] = dot(&share, &integrated[i][0], N);
-                rule.twice[j][i] = dot(&share, &integrated[i][1], N);
+                exact[j][i] = dot(&share, &integrated[i][0], N);
+                rule.once[j][i] = exact[j][i].value();
+                rule.twice[j][i] = dot(&share, &integrated[i][1], N).value();
+                i += 1;
+            }
+            j += 1;
+        }
+        let mut j = 0;
+        while j < N && !closed {
+            let mut i = 0;
+            while i < N {
+                let mut sum = Double::ZERO;
+                let mut k = 0;
+                while k < N {
+                    sum = sum.add(exact[k][i].mul(exact[j][k]));
+                    k += 1;
+                }
+                rule.twice[j][i] = sum.value();
                 i += 1;
             }
             j += 1;
@@ -119,14 +140,14 @@ impl<const N: usize> Rule<N> {
     }
 }
 
-const fn dot(a: &[Double; MOST_NODES], b: &[Double; MOST_NODES], terms: usize) -> f64 {
+const fn dot(a: &[Double; MOST_NODES], b: &[Double; MOST_NODES], terms: usize) -> Double {
     let mut sum = Double::ZERO;
     let mut k = 0;
     while k < terms {
         sum = sum.add(a[k].mul(b[k]));
         k += 1;
     }
-    sum.value()
+    sum
 }
 
 /// The integral of P_k from −1.
@@ -174,14 +195,15 @@ mod tests {
     /// f(u) = (1 + u)ⁿ: once and twice integrated at the nodes, and the mean, by hand.
     #[test]
     fn powers_below_the_number_of_nodes_are_integrated_exactly() {
-        check(&GAUSS_8);
-        check(&GAUSS_16);
-        check(&RADAU_8);
-        check(&RADAU_16);
+        check(&GAUSS_8, 8);
+        check(&GAUSS_16, 16);
+        // The rate, of a degree more, is taken from its values at the nodes.
+        check(&RADAU_8, 7);
+        check(&RADAU_16, 15);
     }
 
-    fn check<const N: usize>(rule: &Rule<N>) {
-        for n in 0..N as i32 {
+    fn check<const N: usize>(rule: &Rule<N>, powers: i32) {
+        for n in 0..powers {
             let values = rule.place.map(|place| place.powi(n));
             let apply =
                 |m: &Columns<N>, i: usize| -> f64 { (0..N).map(|j| m[j][i] * values[j]).sum() };

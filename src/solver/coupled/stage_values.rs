@@ -1,161 +1,87 @@
-//! One state over the nodes of a step, in SIMD registers.
+//! One state over the nodes of a step.
 
-use fearless_simd::{Simd, f64x8};
-use nalgebra::{Const, DimMin, SMatrix, SVector, ToTypenum};
+use fearless_simd::Simd;
 
-use super::Slope;
-use super::polynomials::{Coefficients, TERMS, sum};
+use super::polynomials::{Coefficients, TERMS};
+use super::row::Row;
 use super::rule::{Columns, Rule};
-use crate::solver::lanes::Lanes;
+use crate::solver::collocation::clenshaw;
 use crate::solver::number::Number;
 
-/// A state that relaxes by less than this part in a step needs no linear system.
-const SLOW_RELAXATION: f64 = 0.05;
-
-/// Legendre coefficients by which the slopes of the step before are continued: those of high
-/// degree grow too fast outside their step.
-const CONTINUED: usize = 8;
-
-/// Eight nodes a register.
-const LANES: usize = 8;
-
-/// Numbers at the nodes.
-pub(super) type Row<S, const R: usize> = [f64x8<S>; R];
-
-#[inline(always)]
-pub(super) fn load<S: Simd, const R: usize, const N: usize>(
-    simd: S,
-    values: &[f64; N],
-) -> Row<S, R> {
-    std::array::from_fn(|r| {
-        let mut part = [0.0; LANES];
-        part.copy_from_slice(&values[LANES * r..LANES * (r + 1)]);
-        f64x8::load(simd, &part)
-    })
-}
-
-#[inline(always)]
-pub(super) fn store<S: Simd, const R: usize, const N: usize>(row: &Row<S, R>) -> [f64; N] {
-    let mut values = [0.0; N];
-    for (part, register) in values.chunks_exact_mut(LANES).zip(row) {
-        part.copy_from_slice(&register.store());
-    }
-    values
-}
-
-/// `Σ_j column[j] · value[j]`, in a fixed order.
-#[inline(always)]
-pub(super) fn product<S: Simd, const R: usize, const N: usize>(
-    simd: S,
-    columns: &Columns<N>,
-    values: &[f64; N],
-) -> Row<S, R> {
-    let zero = f64x8::fill(simd, 0.0);
-    let mut sums = [[zero; R]; 2];
-    for j in 0..N {
-        let column: Row<S, R> = load(simd, &columns[j]);
-        let value = f64x8::fill(simd, values[j]);
-        for r in 0..R {
-            sums[j % 2][r] = Number::mul_add(column[r], value, sums[j % 2][r]);
-        }
-    }
-    std::array::from_fn(|r| sums[0][r] + sums[1][r])
-}
-
-/// The slopes of a state that relaxes, see [`super::stages`].
-#[inline(never)]
-fn relaxed<const N: usize>(
-    rule: &Rule<N>,
-    half: f64,
-    relaxation: &[f64; N],
-    right: &[f64; N],
-) -> Option<[f64; N]>
-where
-    Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
-{
-    let system = SMatrix::<f64, N, N>::from_fn(|i, j| {
-        let unit = if i == j { 1.0 } else { 0.0 };
-        unit + half * relaxation[i] * rule.once[j][i]
-    });
-    let solution = system.lu().solve(&SVector::from(*right))?;
-    Some(solution.into())
-}
+/// Pairs of Legendre coefficients by which the slopes of the step before are continued: those of
+/// high degree grow too fast outside their step.
+const CONTINUED_PAIRS: usize = 4;
 
 /// One state over the step: its slopes at the nodes and what they add to it.
 #[derive(Clone, Copy)]
 pub(super) struct StageValues<S: Simd, const R: usize, const N: usize> {
     pub slopes: [f64; N],
     pub gain: Row<S, R>,
-    relaxes: bool,
 }
 
-impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N>
-where
-    Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
-{
-    /// The state as it goes on from the step `before`, or with the slope that it has at the begin.
+impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
+    /// A state that stays where it is.
     #[inline(always)]
-    pub fn guess(
+    pub fn constant(simd: S) -> Self {
+        StageValues {
+            slopes: [0.0; N],
+            gain: Row::fill(simd, 0.0),
+        }
+    }
+
+    /// The state as it goes on from a step of half the length `before`, whose slopes are given.
+    #[inline(always)]
+    pub fn continued(
         simd: S,
         rule: &Rule<N>,
         half: f64,
-        first: Slope,
-        before: Option<(f64, &Coefficients)>,
+        before: f64,
+        series: &Coefficients,
     ) -> Self {
-        let relaxes = half * first.relaxation > SLOW_RELAXATION;
-        let slopes = match before {
-            // It stays where it is: a fast transient would lead far away.
-            _ if relaxes => [0.0; N],
-            Some((length, series)) => rule
-                .place
-                .map(|place| sum(&series[..CONTINUED], 1.0 + half / length * place)),
-            None => [first.value; N],
-        };
-        let gain = product(simd, &rule.once, &slopes).map(|sum| sum * f64x8::fill(simd, half));
-        StageValues {
-            slopes,
-            gain,
-            relaxes,
-        }
+        let fill = |value: f64| Row::fill(simd, value);
+        let place: Row<S, R> = Row::load(simd, &rule.place);
+        let u = place.mul_add(fill(half / before), fill(1.0));
+        let slopes = clenshaw::<Row<S, R>, CONTINUED_PAIRS>(u, |degree| fill(series[degree]));
+        let mut values = StageValues::constant(simd);
+        values.take(simd, rule, half, slopes);
+        values
+    }
+
+    /// The state with this slope.
+    #[inline(always)]
+    pub fn going(simd: S, rule: &Rule<N>, half: f64, slope: f64) -> Self {
+        let mut values = StageValues::constant(simd);
+        values.take(simd, rule, half, Row::fill(simd, slope));
+        values
+    }
+
+    /// The slopes, corrected by what they lack of `new` ones times the inverse of a matrix.
+    #[inline(always)]
+    pub fn corrected(&self, simd: S, inverse: &Columns<N>, new: Row<S, R>) -> Row<S, R> {
+        let old = Row::load(simd, &self.slopes);
+        old + Row::product(simd, inverse, &(new - old).store())
     }
 
     /// Takes new slopes, and returns by how much the state has changed.
     #[inline(always)]
-    pub fn update(
-        &mut self,
-        simd: S,
-        rule: &Rule<N>,
-        half: f64,
-        new: &[Slope<f64x8<S>>; R],
-    ) -> Option<f64> {
-        let value: Row<S, R> = std::array::from_fn(|r| new[r].value);
-        self.slopes = if self.relaxes {
-            let relaxation: Row<S, R> = std::array::from_fn(|r| new[r].relaxation);
-            let right: Row<S, R> =
-                std::array::from_fn(|r| Number::mul_add(relaxation[r], self.gain[r], value[r]));
-            relaxed(rule, half, &store(&relaxation), &store(&right))?
-        } else {
-            store(&value)
-        };
-        let gain = product(simd, &rule.once, &self.slopes).map(|sum| sum * f64x8::fill(simd, half));
-        let change = largest_change(&self.gain, &gain);
+    pub fn take(&mut self, simd: S, rule: &Rule<N>, half: f64, slopes: Row<S, R>) -> f64 {
+        self.slopes = slopes.store();
+        let gain = Row::product(simd, &rule.once, &self.slopes) * Row::fill(simd, half);
+        let change = (gain - self.gain).largest();
         self.gain = gain;
-        Some(change)
+        change
     }
 
     /// The Legendre coefficients of the slopes.
     #[inline(always)]
-    pub fn series(&self, simd: S, rule: &Rule<N>) -> Coefficients {
-        series(simd, rule, &self.slopes)
+    pub fn series(&self, rule: &Rule<N>) -> Coefficients {
+        series(rule, &self.slopes)
     }
 }
 
+/// The Legendre coefficients of numbers at the nodes.
 #[inline(always)]
-pub(super) fn series<S: Simd, const N: usize>(
-    _simd: S,
-    rule: &Rule<N>,
-    values: &[f64; N],
-) -> Coefficients {
+pub(super) fn series<const N: usize>(rule: &Rule<N>, values: &[f64; N]) -> Coefficients {
     let mut all = [0.0; TERMS];
     for (column, value) in rule.series.iter().zip(values) {
         for (term, share) in all.iter_mut().zip(column) {
@@ -163,19 +89,4 @@ pub(super) fn series<S: Simd, const N: usize>(
         }
     }
     all
-}
-
-#[inline(always)]
-pub(super) fn largest_change<S: Simd, const R: usize>(old: &Row<S, R>, new: &Row<S, R>) -> f64 {
-    let mut largest = 0.0_f64;
-    for r in 0..R {
-        let change = Lanes::abs(new[r] - old[r]).largest();
-        // NaN is kept.
-        largest = if change > largest || change.is_nan() {
-            change
-        } else {
-            largest
-        };
-    }
-    largest
 }

@@ -1,27 +1,40 @@
 //! One step of collocation of a coupled system, with 8 or 16 nodes.
 //!
-//! Each iteration first solves the first-order states one by one, with the position held, then
-//! the rate, then the position. A state y with y' = s − J (y − y_last) at the nodes, s and J from
-//! the last iteration, has the slopes K of the linear system
+//! Unknown are the slopes K_k of each first-order state and f = x'' at the nodes. Each iteration first
+//! takes the slopes of the states as they are with the position held, then f:
 //!
 //! ```text
-//! (1 + h diag(J) A) K = s + J (y_last − y_begin)
+//! K_k ← K_k + B_k⁻¹ (z_k' − K_k),   f ← f + S⁻¹ (x'' − f)
 //! ```
 //!
-//! where hA integrates from the begin of the step. The slopes are solved for, not the states:
-//! where J is large, y' = s − J y would lose the digits that h J has. Where h J is small the
-//! plain iteration K = s does as well.
+//! Where nothing is stiff, B_k and S are 1: fixed-point (Picard) iteration, on Gauss nodes. Else they
+//! are those of Newton's method (see [`super::newton`]), on Radau nodes. The slopes are solved
+//! for, not the states: where a state relaxes fast, its equation would lose the digits of z'.
 
-use fearless_simd::{Level, Simd, dispatch, f64x8};
-use nalgebra::{Const, DimMin, ToTypenum};
+use fearless_simd::{Level, Simd, dispatch};
 
+use super::newton::Newton;
 use super::polynomials::{Coefficients, TERMS};
+use super::row::Row;
 use super::rule::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
-use super::stage_values::{Row, StageValues, largest_change, load, product, series, store};
-use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage};
+use super::stage_values::{StageValues, series};
+use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
 use crate::solver::iteration::{Diverged, IterationTolerance};
-use crate::solver::lanes::Lanes;
+
+/// Matrices that let an iteration shrink its change by less than this factor are made anew.
+const REFRESHED: f64 = 0.4;
+
+/// The work of all matrices, and of those of the first-order states, in iterations.
+const NEWTON_WORK: u32 = 10;
+const STATES_WORK: u32 = 4;
+
+/// The first ratio of two changes says little of the rate of convergence: the first change may be that of a state that is
+/// found at once, the second one of another that is not.
+const UNKNOWN_RATE: f64 = 0.1;
+
+/// A change that is a small multiple of rounding tells nothing of the convergence.
+const NOISE: f64 = 16.0;
 
 /// Slopes over a step by their Legendre coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +77,8 @@ pub(super) struct Step {
     pub powers: [Coefficients; MOST_INTEGRALS],
     /// Number of nodes.
     pub nodes: usize,
+    /// Whether they are Radau nodes.
+    pub stiff: bool,
     /// Smallest and largest position at a node.
     pub range: [f64; 2],
     /// By how much an iteration shrank the change of the one before.
@@ -72,8 +87,9 @@ pub(super) struct Step {
 
 impl Step {
     /// The largest error between begin and end in units of the sizes: the part of a slope after
-    /// its last coefficient, taken to go on falling as it does up to there, once or twice
-    /// integrated.
+    /// its last coefficient, once or twice integrated. On Gauss nodes the coefficients are taken to go on falling
+    /// as they do up to there; on Radau nodes what follows fast is no more accurate than its last
+    /// coefficient.
     pub fn error(&self, sizes: &Sizes, integrals: usize) -> f64 {
         let half = self.series.half;
         let degree = 2.0 * self.nodes as f64;
@@ -98,16 +114,26 @@ impl Step {
         let n = self.nodes;
         let last = series[n - 1].abs() + series[n - 2].abs();
         let before = series[n - 3].abs() + series[n - 4].abs();
-        if last == 0.0 {
-            return 0.0;
+        if last == 0.0 || self.stiff {
+            return last;
         }
         // NaN where both vanish was excluded; a rising series is as large as its last terms.
         last * (last / before).min(1.0)
     }
 }
 
-/// Solves a step of a system, with Radau nodes where it is stiff and Gauss nodes else, with 16
-/// of them or 8.
+/// How the stages of a step are iterated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Iteration {
+    /// By fixed-point iteration on Gauss nodes.
+    FixedPoint,
+    /// By Newton's method for each of the first-order states, on Radau nodes.
+    States,
+    /// By Newton's method for everything, on Radau nodes.
+    Newton,
+}
+
+/// Solves a step of a system with 8 nodes, if those are enough, or 16, and counts the iterations into `work`.
 ///
 /// # Errors
 /// [`Diverged`] where the iteration does not converge or leaves the range of the equation; a
@@ -117,13 +143,15 @@ pub(super) fn solve<L: LocalCoupledEquation>(
     level: Level,
     local: &L,
     task: &Task,
-    [stiff, few]: [bool; 2],
+    (iteration, few): (Iteration, bool),
+    work: &mut u32,
 ) -> Result<Step, Diverged> {
+    let stiff = iteration != Iteration::FixedPoint;
     match (stiff, few) {
-        (false, false) => solve_by::<L, 2, 16>(level, &GAUSS_16, local, task),
-        (false, true) => solve_by::<L, 1, 8>(level, &GAUSS_8, local, task),
-        (true, false) => solve_by::<L, 2, 16>(level, &RADAU_16, local, task),
-        (true, true) => solve_by::<L, 1, 8>(level, &RADAU_8, local, task),
+        (false, false) => solve_by::<L, 2, 16>(level, &GAUSS_16, local, task, iteration, work),
+        (false, true) => solve_by::<L, 1, 8>(level, &GAUSS_8, local, task, iteration, work),
+        (true, false) => solve_by::<L, 2, 16>(level, &RADAU_16, local, task, iteration, work),
+        (true, true) => solve_by::<L, 1, 8>(level, &RADAU_8, local, task, iteration, work),
     }
 }
 
@@ -133,30 +161,29 @@ fn solve_by<L: LocalCoupledEquation, const R: usize, const N: usize>(
     rule: &Rule<N>,
     local: &L,
     task: &Task,
-) -> Result<Step, Diverged>
-where
-    Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
-{
+    iteration: Iteration,
+    work: &mut u32,
+) -> Result<Step, Diverged> {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx512) = level.as_avx512() {
         return avx512.vectorize(
             #[inline(always)]
-            || by::<_, L, R, N>(avx512, rule, local, task),
+            || by::<_, L, R, N>(avx512, rule, local, task, iteration, work),
         );
     }
-    dispatch!(level, simd => by::<_, L, R, N>(simd, rule, local, task))
+    dispatch!(level, simd => by::<_, L, R, N>(simd, rule, local, task, iteration, work))
 }
 
 #[inline(always)]
+#[allow(clippy::needless_range_loop, reason = "the states that there are")]
 fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
     simd: S,
     rule: &Rule<N>,
     local: &L,
     task: &Task,
-) -> Result<Step, Diverged>
-where
-    Const<N>: ToTypenum + DimMin<Const<N>, Output = Const<N>>,
-{
+    iteration: Iteration,
+    work: &mut u32,
+) -> Result<Step, Diverged> {
     let &Task {
         start,
         length,
@@ -167,70 +194,106 @@ where
         before,
     } = task;
     let half = 0.5 * length;
-    let fill = |value: f64| f64x8::fill(simd, value);
-    let place: Row<S, R> = load(simd, &rule.place);
-    let load: [L::Load<f64x8<S>>; R] = std::array::from_fn(|r| local.load(place[r] * fill(half)));
+    let fill = |value: f64| Row::<S, R>::fill(simd, value);
+    let place: Row<S, R> = Row::load(simd, &rule.place);
+    let load = local.load(place * fill(half));
     let State { position, rate } = start.motion;
-    let drift: Row<S, R> = std::array::from_fn(|r| place[r] * fill(half * rate));
+    let drift = place * fill(half * rate);
 
     let first_stage = start.stage();
     let first_load = local.load(0.0);
     let first_slopes = local.slopes(first_load, &first_stage);
-    let mut internal: [StageValues<S, R, N>; MOST_STATES] = std::array::from_fn(|k| {
-        let before = before.map(|series| (series.half, &series.internal[k]));
-        StageValues::guess(simd, rule, half, first_slopes[k], before)
-    });
-    let mut motion = StageValues::<S, R, N>::guess(
-        simd,
-        rule,
-        half,
-        local.acceleration(first_load, &first_stage),
-        before.map(|series| (series.half, &series.motion)),
-    );
-    let bend = |slopes: &[f64; N]| -> Row<S, R> {
-        product(simd, &rule.twice, slopes).map(|sum| sum * fill(half * half))
+    let first = local.acceleration(first_load, &first_stage);
+    let mut internal = [StageValues::<S, R, N>::constant(simd); MOST_STATES];
+    let mut motion = StageValues::<S, R, N>::constant(simd);
+    // Where a state relaxes within the step it is taken to stay where it is: a fast transient would
+    // lead far away.
+    for k in 0..states {
+        if half * first_slopes[k].relaxation <= 1.0 {
+            internal[k] = match before {
+                Some(last) => {
+                    StageValues::continued(simd, rule, half, last.half, &last.internal[k])
+                }
+                None => StageValues::going(simd, rule, half, first_slopes[k].value),
+            };
+        }
+    }
+    if half * first.relaxation <= 1.0 {
+        motion = match before {
+            Some(last) => StageValues::continued(simd, rule, half, last.half, &last.motion),
+            None => StageValues::going(simd, rule, half, first.value),
+        };
+    }
+    let mut bent = Row::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
+    let mut at = Stage {
+        position: fill(position) + (drift + bent),
+        rate: fill(rate) + motion.gain,
+        internal: [fill(0.0); MOST_STATES],
     };
-    let mut bent = bend(&motion.slopes);
-    let stages = |internal: &[StageValues<S, R, N>; MOST_STATES],
-                  motion: &StageValues<S, R, N>,
-                  bent: &Row<S, R>|
-     -> [Stage<f64x8<S>>; R] {
-        std::array::from_fn(|r| Stage {
-            position: fill(position) + (drift[r] + bent[r]),
-            rate: fill(rate) + motion.gain[r],
-            internal: std::array::from_fn(|k| fill(start.internal[k]) + internal[k].gain[r]),
-        })
-    };
+    for k in 0..states {
+        at.internal[k] = fill(start.internal[k]) + internal[k].gain;
+    }
 
     let (mut contraction, mut last_change) = (0.0_f64, f64::NAN);
     let mut iterations = 0;
-    let mut at = stages(&internal, &motion, &bent);
+    let mut newton: Option<Newton<S, R, N>> = None;
     loop {
         iterations += 1;
+        *work += 1;
+        let is_slow = iterations > 2 && contraction > REFRESHED;
+        if iteration != Iteration::FixedPoint && (newton.is_none() || is_slow) {
+            let whole = iteration == Iteration::Newton;
+            let (step, equation) = ((rule, half), (local, load, states));
+            newton = Some(Newton::at(simd, step, equation, &at, sizes, whole)?);
+            contraction = 0.0;
+            *work += if whole { NEWTON_WORK } else { STATES_WORK };
+        }
         let mut change = 0.0_f64;
         if states > 0 {
-            let slopes: [[Slope<f64x8<S>>; MOST_STATES]; R] =
-                std::array::from_fn(|r| local.slopes(load[r], &at[r]));
+            let slopes = local.slopes(load, &at);
             for k in 0..states {
-                let new = std::array::from_fn(|r| slopes[r][k]);
-                let moved = internal[k].update(simd, rule, half, &new).ok_or(Diverged)?;
+                let mut new = slopes[k].value;
+                if let Some(newton) = &newton {
+                    new = internal[k].corrected(simd, &newton.internal[k], new);
+                }
+                let moved = internal[k].take(simd, rule, half, new);
                 change = later(change, moved / sizes.internal[k]);
+                at.internal[k] = fill(start.internal[k]) + internal[k].gain;
             }
-            at = stages(&internal, &motion, &bent);
         }
-        let new = std::array::from_fn(|r| local.acceleration(load[r], &at[r]));
-        let moved = motion.update(simd, rule, half, &new).ok_or(Diverged)?;
-        let new = bend(&motion.slopes);
-        change = later(change, moved / sizes.rate);
-        change = later(change, largest_change(&bent, &new) / sizes.position);
+        let mut new = local.acceleration(load, &at).value;
+        let whole = newton.as_ref().and_then(|newton| newton.whole.as_ref());
+        if let Some(whole) = whole {
+            new = motion.corrected(simd, &whole.motion, new);
+        }
+        change = later(change, motion.take(simd, rule, half, new) / sizes.rate);
+        let new = Row::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
+        let moved = new - bent;
+        change = later(change, moved.largest() / sizes.position);
         bent = new;
-        at = stages(&internal, &motion, &bent);
+        at.position = fill(position) + (drift + bent);
+        at.rate = fill(rate) + motion.gain;
+        if let (Some(newton), Some(whole)) = (&newton, whole) {
+            for k in 0..states {
+                let answer = (whole.response[k] * moved).store();
+                let more = Row::product(simd, &newton.internal[k], &answer);
+                let slopes = Row::load(simd, &internal[k].slopes) + more;
+                let moved = internal[k].take(simd, rule, half, slopes);
+                change = later(change, moved / sizes.internal[k]);
+                at.internal[k] = fill(start.internal[k]) + internal[k].gain;
+            }
+        }
 
         if iterations > 1 {
             let ratio = change / last_change;
             let expected = contraction.max(ratio);
-            let done = tolerance.has_converged(iterations, change, last_change, [expected, 1.0])?;
-            if iterations > 2 && !done || iterations == 2 && change > tolerance.rounding {
+            let rate = if iterations == 2 {
+                expected.max(UNKNOWN_RATE)
+            } else {
+                expected
+            };
+            let done = tolerance.has_converged(iterations, change, last_change, [rate, 1.0])?;
+            if change > NOISE * tolerance.rounding {
                 contraction = expected;
             }
             if done {
@@ -240,10 +303,9 @@ where
         last_change = change;
     }
 
-    let positions: [f64; N] = store(&std::array::from_fn::<_, R, _>(|r| at[r].position));
-    let rates: [f64; N] = store(&std::array::from_fn::<_, R, _>(|r| at[r].rate));
-    let insides: [[f64; N]; MOST_STATES] =
-        std::array::from_fn(|k| store(&std::array::from_fn::<_, R, _>(|r| at[r].internal[k])));
+    let positions: [f64; N] = at.position.store();
+    let rates: [f64; N] = at.rate.store();
+    let insides: [[f64; N]; MOST_STATES] = at.internal.map(Row::store);
     let mut powers = [[0.0; N]; MOST_INTEGRALS];
     for i in 0..N {
         let stage = Stage {
@@ -264,17 +326,17 @@ where
     }
     let powers: [Coefficients; MOST_INTEGRALS] = std::array::from_fn(|k| {
         if k < integrals {
-            series(simd, rule, &powers[k])
+            series(rule, &powers[k])
         } else {
             [0.0; TERMS]
         }
     });
     let series = Slopes {
         half,
-        motion: motion.series(simd, rule),
+        motion: motion.series(rule),
         internal: std::array::from_fn(|k| {
             if k < states {
-                internal[k].series(simd, rule)
+                internal[k].series(rule)
             } else {
                 [0.0; TERMS]
             }
@@ -301,6 +363,7 @@ where
         series,
         powers,
         nodes: N,
+        stiff: iteration != Iteration::FixedPoint,
         range,
         contraction,
     })

@@ -76,8 +76,8 @@ impl Method for Carried {
     type Event = super::Event;
     type Origin = crate::solver::double::Double;
 
-    /// Each is the work of ten without first-order states.
-    const MOST_STEPS: u32 = 200_000;
+    /// Counted in iterations: about a second of work.
+    const MOST_STEPS: u32 = 600_000;
 
     fn is_valid(&self, motion: &Trajectory) -> bool {
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());

@@ -59,8 +59,14 @@ fn first_below(
             }
             return Some(crossing(at(i - 1), at(i), |t| margin(segment, t)));
         }
-        // A dip between three points may go below 0 and come back.
-        if i >= 2 && values[i - 1] <= values[i - 2] && values[i - 1] <= values[i] {
+        // A dip between three points may go below 0 and come back; that of a parabola is an eighth as deep as its ends
+        // are high.
+        let is_deep = |middle: f64, ends: f64| 3.0 * middle <= ends;
+        if i >= 2
+            && values[i - 1] <= values[i - 2]
+            && values[i - 1] <= values[i]
+            && is_deep(values[i - 1], values[i - 2] + values[i])
+        {
             let lowest = lowest_between(at(i - 2), at(i), |t| margin(segment, t));
             if margin(segment, lowest) <= 0.0 {
                 return Some(crossing(at(i - 2), lowest, |t| margin(segment, t)));

@@ -4,7 +4,7 @@ use super::Trajectory;
 use super::evaluation::by_degree;
 use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
-use crate::solver::coupled::stages::{self, Slopes, Step, Task};
+use crate::solver::coupled::stages::{self, Iteration, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
 use crate::solver::dense_output::{PAIRS, Segment};
 use crate::solver::double::Double;
@@ -25,6 +25,19 @@ const FIRST_RELAXATION: f64 = 0.5;
 /// A step shorter than this part of the time scale cannot go on: transients are much shorter.
 const SHORTEST_TRANSIENT: f64 = 1e-14;
 
+/// A state that relaxes by less than this part in half a step does not hamper fixed-point iteration.
+const SLOW_RELAXATION: f64 = 0.25;
+
+/// Sums over the nodes round by some units in the last place.
+const ROUNDED: f64 = 4.0;
+
+/// The states at the nodes are rounded, and so are the last coefficients of what leads from one to the other: of an
+/// error below this part of the sizes nothing is seen.
+const ERROR_NOISE: f64 = 32.0 * f64::EPSILON;
+
+/// Steps that the error allows to be longer by this factor than fixed-point iteration does are left to Newton's method.
+const MUCH_LONGER: f64 = 3.0;
+
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
 
@@ -32,7 +45,6 @@ const SHRINKING: f64 = 0.3;
 struct Method {
     states: usize,
     integrals: usize,
-    stiff: bool,
     few: bool,
     control: StepControl,
 }
@@ -44,6 +56,7 @@ impl Trajectory {
         &mut self,
         equation: &E,
         rest: f64,
+        work: &mut u32,
     ) -> Result<Double, f64> {
         let begin = self.history.end();
         let first = self.history.is_empty();
@@ -74,7 +87,6 @@ impl Trajectory {
         let method = Method {
             states,
             integrals,
-            stiff: equation.is_stiff(),
             few: self.restarts_at_every_step,
             control: if repeats || self.restarts_at_every_step {
                 self.control.repeated()
@@ -87,7 +99,7 @@ impl Trajectory {
         } else {
             f64::INFINITY
         };
-        let step = self.step(&local, &start, origin, &method, most)?;
+        let step = self.step(&local, &start, origin, &method, most, work)?;
         let segment = Segment::new(start.motion, step.end.motion, &motion_series(&step));
         // The steps are kept while they may still make an orbit.
         let shift = self.push(origin, segment, repeats);
@@ -117,6 +129,7 @@ impl Trajectory {
         origin: Double,
         method: &Method,
         most: f64,
+        work: &mut u32,
     ) -> Result<Step, f64> {
         let stage = start.stage();
         let mut sizes = local.sizes(&stage);
@@ -124,6 +137,11 @@ impl Trajectory {
             sizes.integrals = sizes.integrals.max(sum.abs());
         }
         let scale = 1.0 / local.natural_frequency(&stage);
+        let load = local.load(0.0);
+        let slopes = local.slopes(load, &stage);
+        let damping = local.acceleration(load, &stage).relaxation;
+        let relaxation =
+            { slopes[..method.states].iter().map(|slope| slope.relaxation) }.fold(0.0, f64::max);
         let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
@@ -148,22 +166,53 @@ impl Trajectory {
                 states: method.states,
                 integrals: method.integrals,
                 sizes: &sizes,
-                tolerance: IterationTolerance::new(control.end_tolerance_within(part), 1.0),
+                tolerance: IterationTolerance::new(control.end_tolerance_within(part), ROUNDED),
                 before: before.as_ref(),
             };
-            let solved = stages::solve(self.level, local, &task, [method.stiff, method.few]);
+            let fast = |relaxation: f64| 0.5 * length * relaxation > SLOW_RELAXATION;
+            let iteration = if fast(damping) {
+                Iteration::Newton
+            } else if fast(relaxation) {
+                Iteration::States
+            } else {
+                Iteration::FixedPoint
+            };
+            let mut solve = |iteration| {
+                let way = (iteration, method.few);
+                stages::solve(self.level, local, &task, way, work)
+            };
+            let solved = match solve(iteration) {
+                Err(Diverged) if iteration != Iteration::Newton => solve(Iteration::Newton),
+                solved => solved,
+            };
             let step = solved.map_err(|Diverged| HALVED)?;
             let ends = step.range.map(|position| local.size_of(position));
             let least = ends[0].min(ends[1]);
             if least < SHRINKING * sizes.position || self.leaves(&step, origin) {
                 return Err(HALVED);
             }
+            let tolerance = control.tolerance.max(ERROR_NOISE);
+            let part = if method.integrals > 0 {
+                (sizes.swing / sizes.position).max(ERROR_NOISE / tolerance)
+            } else {
+                1.0
+            };
+            let part = part.min(1.0);
             let here = Sizes {
-                position: least.min(sizes.position),
+                position: part * least.min(sizes.position),
+                rate: part * sizes.rate,
+                internal: sizes.internal.map(|size| part * size),
                 ..sizes
             };
-            let ratio = step.error(&here, method.integrals) / control.tolerance;
-            let factor = judge(ratio, (step.nodes + 1) as f64, SLOW / step.contraction)?;
+            let ratio = step.error(&here, method.integrals) / tolerance;
+            let order = (step.nodes + 1) as f64;
+            // Where the error allows much longer steps, Newton's method takes them.
+            let effort = if ratio < MUCH_LONGER.powf(-order) {
+                f64::INFINITY
+            } else {
+                SLOW / step.contraction
+            };
+            let factor = judge(ratio, order, effort)?;
             Ok((step, factor))
         })?;
         // A step cut short says little about the next one.

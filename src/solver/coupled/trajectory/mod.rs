@@ -6,7 +6,7 @@ use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::History;
 use crate::solver::double::Double;
-use crate::solver::integrator::{Integrator, Mode};
+use crate::solver::integrator::{Integrator, Method, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
 use crate::solver::outcome::Progress as PlainProgress;
@@ -14,6 +14,9 @@ use crate::solver::outcome::Progress as PlainProgress;
 mod evaluation;
 mod events;
 mod extension;
+
+/// The work of a step beside its iterations, in iterations.
+const STEP_WORK: u32 = 4;
 
 /// Why a motion stops before the time asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -125,12 +128,37 @@ impl Trajectory {
         clock: &mut Double,
         step: f64,
     ) -> Result<Progress, Failure> {
+        let mut work = Carried::MOST_STEPS;
+        self.advance_within(equation, clock, step, &mut work)
+    }
+
+    /// [`Trajectory::advance`] with no more than this `work`, in iterations, from which what is done is
+    /// taken.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn advance_within<E: CoupledEquation>(
+        &mut self,
+        equation: &E,
+        clock: &mut Double,
+        step: f64,
+        work: &mut u32,
+    ) -> Result<Progress, Failure> {
         if self.advance_inside_step(clock, step) {
             return Ok(Progress::Whole);
         }
+        let beside = STEP_WORK
+            + if equation.integrals() > 0 || equation.awaits_event() {
+                STEP_WORK
+            } else {
+                0
+            };
         self.advance_by_steps(clock, step, |motion, target, budget| {
-            *budget -= 1;
-            motion.extend(equation, target.since(motion.history.end()))
+            let mut done = beside;
+            let shift = motion.extend(equation, target.since(motion.history.end()), &mut done);
+            *work = work.saturating_sub(done);
+            *budget = budget.saturating_sub(done).min(*work);
+            shift
         })
     }
 }

@@ -1,0 +1,129 @@
+//! Numbers at all nodes of a step, as one number of the equation.
+
+use std::ops::{Add, Div, Mul, Sub};
+
+use fearless_simd::{Simd, f64x8};
+
+use super::rule::Columns;
+use crate::solver::lanes::Lanes;
+use crate::solver::number::Number;
+
+/// Nodes in a register.
+const LANES: usize = 8;
+
+/// A number for each of 8 R nodes, in R registers.
+#[derive(Clone, Copy)]
+pub(super) struct Row<S: Simd, const R: usize>([f64x8<S>; R]);
+
+impl<S: Simd, const R: usize> Row<S, R> {
+    /// The same number at all nodes.
+    #[inline(always)]
+    pub fn fill(simd: S, value: f64) -> Self {
+        Row([f64x8::fill(simd, value); R])
+    }
+
+    /// These numbers.
+    #[inline(always)]
+    pub fn load<const N: usize>(simd: S, values: &[f64; N]) -> Self {
+        let mut row = Row::fill(simd, 0.0);
+        for r in 0..R {
+            let mut part = [0.0; LANES];
+            part.copy_from_slice(&values[LANES * r..LANES * (r + 1)]);
+            row.0[r] = f64x8::load(simd, &part);
+        }
+        row
+    }
+
+    /// The numbers.
+    #[inline(always)]
+    pub fn store<const N: usize>(self) -> [f64; N] {
+        let mut values = [0.0; N];
+        for r in 0..R {
+            values[LANES * r..LANES * (r + 1)].copy_from_slice(&self.0[r].store());
+        }
+        values
+    }
+
+    /// `Σ_j column[j] · value[j]`, in a fixed order.
+    #[inline(always)]
+    pub fn product<const N: usize>(simd: S, columns: &Columns<N>, values: &[f64; N]) -> Self {
+        let mut sums = [Row::fill(simd, 0.0); 2];
+        for j in 0..N {
+            let column: Self = Row::load(simd, &columns[j]);
+            sums[j % 2] = column.mul_add(Row::fill(simd, values[j]), sums[j % 2]);
+        }
+        sums[0] + sums[1]
+    }
+
+    /// The size of the largest number; NaN where one is that.
+    #[inline(always)]
+    pub fn largest(self) -> f64 {
+        let mut largest = 0.0_f64;
+        for r in 0..R {
+            let here = Lanes::abs(self.0[r]).largest();
+            largest = if here <= largest { largest } else { here };
+        }
+        largest
+    }
+
+    #[inline(always)]
+    fn each(mut self, of: impl Fn(f64x8<S>) -> f64x8<S>) -> Self {
+        for r in 0..R {
+            self.0[r] = of(self.0[r]);
+        }
+        self
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $name:ident),*) => {$(
+        impl<S: Simd, const R: usize> $operator for Row<S, R> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $name(mut self, other: Self) -> Self {
+                for r in 0..R {
+                    self.0[r] = $operator::$name(self.0[r], other.0[r]);
+                }
+                self
+            }
+        }
+    )*};
+}
+
+operators!(Add add, Sub sub, Mul mul, Div div);
+
+impl<S: Simd, const R: usize> Number for Row<S, R> {
+    #[inline(always)]
+    fn same(self, value: f64) -> Self {
+        Row([self.0[0].same(value); R])
+    }
+
+    #[inline(always)]
+    fn mul_add(mut self, factor: Self, addend: Self) -> Self {
+        for r in 0..R {
+            self.0[r] = Number::mul_add(self.0[r], factor.0[r], addend.0[r]);
+        }
+        self
+    }
+
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.each(Number::sin)
+    }
+
+    #[inline(always)]
+    fn exp(self) -> Self {
+        self.each(Number::exp)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.each(Number::sqrt)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        self.each(Number::magnitude)
+    }
+}
