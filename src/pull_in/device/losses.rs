@@ -22,7 +22,8 @@ use crate::actuator::device::equation::Load;
 use crate::actuator::device::{Device, DeviceMotion, Port};
 use crate::solver::State;
 use crate::solver::coupled::{
-    CoupledEquation, Event, FullState, MOST_INTEGRALS, MOST_STATES, Progress, Stage, Trajectory,
+    CoupledEquation, Event, Failure, FullState, MOST_INTEGRALS, MOST_STATES, Progress, Stage,
+    Trajectory,
 };
 use crate::solver::double::Double;
 use crate::solver::jet::Dual;
@@ -36,7 +37,16 @@ const TOLERANCE: f64 = 1e-14;
 const RESOLUTION: f64 = 1e-13;
 
 /// Looks at the motion in each of which it is asked for its energy, at most.
-const MOST_LOOKS: u32 = 100_000;
+const MOST_LOOKS: u32 = 1000;
+
+/// Iterations of all motions of a search, at most: some seconds of work.
+const MOST_WORK: u32 = 4_000_000;
+
+/// By how much the time to the next look grows: beside the saddle and the fold it creeps.
+const SELDOM: f64 = 1.05;
+
+/// Time of charging in periods beyond which the motion follows the charge.
+const SLOW_CHARGING: f64 = 100.0;
 
 /// Between which stretches the motion is followed.
 const LIMITS: Limits = Limits {
@@ -76,6 +86,9 @@ impl Default for Search {
 ///   comes, sooner or later.
 /// * Where there is no dynamic threshold but a static one, it is the static one: a damped motion
 ///   may end in either well then, alternately with the voltage.
+/// * Where the membrane charges more slowly than in a hundred periods, it is the static one too: the motion follows the
+///   charge (in the paper's device from a twentieth of a period on). The same is given where a motion is too much work to be
+///   followed.
 /// * A leak enters by the division of the voltage that it makes: exactly if it is a fixed
 ///   resistor, at the static fold if it is the material.
 ///
@@ -116,9 +129,26 @@ pub fn from_rest(device: &Device, prestress: f64, search: &mut Search) -> Option
         breakdown: None,
         ..*device
     };
+    let period = std::f64::consts::TAU * ((device.sheet.aspect + 2.0) / 6.0).sqrt();
+    if lossy.port.resistance > SLOW_CHARGING * period {
+        return Some(fold);
+    }
+    let (mut is_followed, mut work) = (true, MOST_WORK);
     let mut excess = |voltage: f64| {
         let trajectory = &mut search.trajectory;
-        excess_of(trajectory, &lossy, &curves, voltage, fold.stretch)
+        let excess = is_followed
+            .then(|| {
+                excess_of(
+                    trajectory,
+                    &lossy,
+                    &curves,
+                    [voltage, fold.stretch],
+                    &mut work,
+                )
+            })
+            .flatten();
+        is_followed = excess.is_some();
+        excess.unwrap_or(-1.0)
     };
     let (low, high) = (dynamic.voltage.min(membrane), membrane);
     let above = excess(high * (1.0 - 1e-12));
@@ -126,6 +156,9 @@ pub fn from_rest(device: &Device, prestress: f64, search: &mut Search) -> Option
         return Some(fold);
     }
     let high = sign_change([low, high], [excess(low), above], excess);
+    if !is_followed {
+        return Some(fold);
+    }
     let saddle = curves.saddle(high * high, fold.stretch)?;
     Some(Fold {
         voltage: divider * high,
@@ -181,17 +214,18 @@ fn sign_change(
 }
 
 /// By how much a step to a voltage below the static threshold, whose fold is at this stretch,
-/// passes the saddle; negative where it comes back. With a series resistance 1 or −1.
+/// passes the saddle; negative where it comes back. With a series resistance 1 or −1. `None` where
+/// the motion is too much work.
 fn excess_of(
     trajectory: &mut Trajectory,
     device: &Device,
     curves: &Curves,
-    voltage: f64,
-    fold: f64,
-) -> f64 {
+    [voltage, fold]: [f64; 2],
+    work: &mut u32,
+) -> Option<f64> {
     let prestress = curves.prestress;
     let Some(point) = curves.saddle(voltage * voltage, fold) else {
-        return -1.0;
+        return Some(-1.0);
     };
     let barrier = curves.potential(point) - 0.5 * voltage * voltage * curves.capacitance(point);
     let saddle = curves.stretch(point);
@@ -212,19 +246,21 @@ fn excess_of(
     trajectory.record_extremes_anew(!charges);
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
     let slowness = 1.0 + device.damping.coefficient(1.0) / period;
-    let look = 0.5 * period * slowness;
+    let mut look = 0.5 * period * slowness;
     for _ in 0..MOST_LOOKS {
-        match trajectory.advance(&motion, &mut clock, look) {
+        match trajectory.advance_within(&motion, &mut clock, look, work) {
             Ok(Progress::Whole) => {}
             Ok(Progress::Stopped {
                 limit: Event::Limit(Limit::Upper),
                 ..
             }) if !charges => {
                 let distance = trajectory.rate() / (decay * (growth / decay).powf(growth / sum));
-                return distance.max(0.0).powf(sum / decay).max(f64::MIN_POSITIVE);
+                return Some(distance.max(0.0).powf(sum / decay).max(f64::MIN_POSITIVE));
             }
+            Err(Failure::TooManySubsteps { .. }) => return None,
             _ => break,
         }
+        look *= SELDOM;
         let (origin, position) = trajectory.position_from_origin();
         let stage = Stage {
             position,
@@ -244,11 +280,11 @@ fn excess_of(
             break;
         }
     }
-    match trajectory.extremes() {
+    Some(match trajectory.extremes() {
         Some(extremes) => -(saddle - extremes.highest).max(0.0).powf(sum / decay),
         None if trajectory.position() > saddle => 1.0,
         None => -1.0,
-    }
+    })
 }
 
 impl Curves {
