@@ -13,7 +13,6 @@ use dielectric_elastomer_actuator::solver::coupled::{
 };
 use dielectric_elastomer_actuator::solver::double::Double;
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), range]
@@ -101,9 +100,6 @@ fn set(motion: &mut DeviceMotion, trajectory: &mut Clocked<Carried>, drive: Driv
 proptest! {
     #![proptest_config(ProptestConfig {
         cases: 1000,
-        // About one device in two thousand misses the bound, by less than five times: a fixed seed says
-        // the same in each run.
-        rng_seed: RngSeed::Fixed(1),
         failure_persistence: None,
         ..ProptestConfig::default()
     })]
