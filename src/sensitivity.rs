@@ -11,7 +11,7 @@ use crate::actuator::motion::{self, Load};
 use crate::actuator::{Drive, Parameters};
 use crate::nondimensional::scene::Scene;
 use crate::solver::dense_output::Segment;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::limits::Limit;
 use crate::solver::linearized::{Linearized, Stages, offsets};
@@ -120,7 +120,7 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
     } = *experiment;
     let mut samples = Vec::with_capacity(times.len());
     let mut budget = MOST_SUBSTEPS;
-    let mut clock = Double::ZERO;
+    let mut clock = DoubleDouble::ZERO;
     let mut trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
     let mut beside = Known::ALL.map(start_of);
     let Some(&last) = times.last() else {
@@ -255,7 +255,7 @@ fn direction(known: Known, experiment: &Experiment, ramp: &Ramp) -> Scene {
 /// The motions beside a substep that began at `begin`, one for each direction.
 fn variation(
     scene: &Scene,
-    begin: Double,
+    begin: DoubleDouble,
     segment: &Segment,
     starts: &[State; 9],
     directions: &[Scene; 9],
@@ -285,7 +285,7 @@ fn variation(
 }
 
 /// How λ'' changes where the scene and the state change in a direction.
-fn slope(scene: &Scene, time: Double, state: State, direction: &Scene, change: State) -> f64 {
+fn slope(scene: &Scene, time: DoubleDouble, state: State, direction: &Scene, change: State) -> f64 {
     let coefficients = Coefficients::fold(&scene.parameters.along(&direction.parameters));
     let (voltage, prestress) = scene.drive.along(
         &Drive {

@@ -20,7 +20,7 @@ use fearless_simd::Level;
 use crate::actuator::Ensemble;
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::ensemble::{self, Arrival, Member};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
@@ -55,7 +55,7 @@ pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome,
             limits: scene.limits,
         })
         .collect();
-    let span = [Double::ZERO, Double::new(end)];
+    let span = [DoubleDouble::ZERO, DoubleDouble::new(end)];
     let arrivals = ensemble::follow(
         Level::new(),
         &mut Ensemble::new(),
@@ -81,7 +81,7 @@ pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome,
 pub fn follow_one(scene: &Scene, end: f64, tolerance: f64) -> Result<Outcome, Failure> {
     let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
     let mut trajectory = trajectory.recording_extremes();
-    let mut clock = Double::ZERO;
+    let mut clock = DoubleDouble::ZERO;
     let progress = trajectory.advance(scene, &mut clock, end)?;
     Ok(Outcome {
         state: trajectory.state(),

@@ -2,7 +2,7 @@
 
 use dielectric_elastomer_actuator::actuator::Ensemble;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::ensemble::{self, Member};
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
@@ -91,7 +91,7 @@ fn a_motion_next_to_rest_is_not_given_back() {
         start: scene.start,
         limits: scene.limits,
     };
-    let span = [Double::ZERO, Double::new(5000.0)];
+    let span = [DoubleDouble::ZERO, DoubleDouble::new(5000.0)];
     let arrivals = ensemble::follow(Level::new(), &mut Ensemble::new(), &[motion], span, 1e-9);
     let arrival = arrivals[0].expect("it shares lanes all the way");
     assert_eq!(arrival.state, scene.start);

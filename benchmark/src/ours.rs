@@ -3,7 +3,7 @@
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 use fearless_simd::Level;
@@ -97,7 +97,7 @@ pub fn motion(case: &Case) -> Motion {
 
 fn follow(case: &Case, mut trajectory: Trajectory, states: &mut Vec<Pair>) -> Result<(), String> {
     let motion = motion(case);
-    let (mut before, mut clock) = (0.0, Double::ZERO);
+    let (mut before, mut clock) = (0.0, DoubleDouble::ZERO);
     for &time in &case.times {
         match trajectory.advance(&motion, &mut clock, time - before) {
             Ok(Progress::Whole) => {}

@@ -7,7 +7,7 @@ use std::time::Duration;
 use dielectric_elastomer_actuator::actuator::motion::{Load, LocalMotion};
 use dielectric_elastomer_actuator::actuator::{Drive, Motion};
 use dielectric_elastomer_actuator::nondimensional::value_reference;
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
@@ -68,7 +68,7 @@ pub fn run(case: &Case, least: Duration) {
 
 /// The stretch after `time` in steps of `step`.
 fn follow<E: Equation>(mut trajectory: Trajectory, equation: &E, time: f64, step: f64) -> f64 {
-    let mut clock = Double::ZERO;
+    let mut clock = DoubleDouble::ZERO;
     for _ in 0..(time / step).round() as u64 {
         assert!(trajectory.advance(equation, &mut clock, step).is_ok());
     }
@@ -252,7 +252,7 @@ struct LocalUnfolded<'a> {
 impl Equation for Unfolded {
     type Local<'a> = LocalUnfolded<'a>;
 
-    fn at(&self, time: &Double) -> LocalUnfolded<'_> {
+    fn at(&self, time: &DoubleDouble) -> LocalUnfolded<'_> {
         LocalUnfolded {
             motion: self.motion.at(time),
             inertia: self.motion.coefficients.inertia,
@@ -330,7 +330,7 @@ struct LocalIdeal<'a>(LocalMotion<'a>, f64);
 impl Equation for Ideal {
     type Local<'a> = LocalIdeal<'a>;
 
-    fn at(&self, time: &Double) -> LocalIdeal<'_> {
+    fn at(&self, time: &DoubleDouble) -> LocalIdeal<'_> {
         LocalIdeal(self.0.at(time), self.0.coefficients.inertia)
     }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub use super::harmonic::Harmonic;
 use super::harmonic::TURN;
 pub use super::polynomial::{HIGHEST_DERIVATIVE, Polynomial};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
@@ -17,7 +17,7 @@ use crate::solver::number::Number;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Drive {
     /// Time of the model at which the inputs were set.
-    pub since: Double,
+    pub since: DoubleDouble,
     /// φ, the voltage that the host sets.
     pub voltage: Polynomial,
     /// S, prestress.
@@ -34,7 +34,7 @@ impl Drive {
     #[must_use]
     pub const fn constant(voltage: f64, prestress: f64) -> Drive {
         Drive {
-            since: Double::ZERO,
+            since: DoubleDouble::ZERO,
             voltage: Polynomial::constant(voltage),
             prestress: Polynomial::constant(prestress),
             harmonic: Harmonic::OFF,
@@ -44,7 +44,7 @@ impl Drive {
 
     /// The angle of the alternating voltage at `time`.
     #[inline(always)]
-    pub(super) fn angle(&self, time: Double) -> f64 {
+    pub(super) fn angle(&self, time: DoubleDouble) -> f64 {
         self.harmonic.angle(time) + self.lead
     }
 
@@ -81,7 +81,7 @@ impl Drive {
 
     /// Counts the time of the inputs from `time` on.
     #[inline(always)]
-    pub fn rebase(&mut self, time: Double) {
+    pub fn rebase(&mut self, time: DoubleDouble) {
         let shift = time.since(self.since);
         self.since = time;
         self.voltage.shift(shift);
@@ -91,7 +91,7 @@ impl Drive {
     /// Total voltage and prestress at `time` as they change in a direction,
     /// whose numbers are the rates of change of those in their places.
     #[must_use]
-    pub fn along(&self, direction: &Drive, time: Double) -> (Dual, Dual) {
+    pub fn along(&self, direction: &Drive, time: DoubleDouble) -> (Dual, Dual) {
         let offset = time.since(self.since);
         let input = |value: &Polynomial, change: &Polynomial| {
             Dual::new(value.at(offset), change.at(offset))
@@ -152,7 +152,7 @@ impl Drive {
     /// The drive seen from `time`.
     #[must_use]
     #[inline(always)]
-    pub fn at(&self, time: &Double) -> LocalDrive<'_> {
+    pub fn at(&self, time: &DoubleDouble) -> LocalDrive<'_> {
         let constant = self.voltage.is_constant() && self.prestress.is_constant();
         LocalDrive {
             drive: self,
@@ -283,16 +283,16 @@ mod tests {
         };
         // Sums of steps and of frequencies of few bits, so that nothing is rounded
         // in the expected angle before it is reduced.
-        let (mut angle, mut time) = (Double::ZERO, 0.0);
+        let (mut angle, mut time) = (DoubleDouble::ZERO, 0.0);
         for k in 0..100_000_u32 {
             let frequency = 0.125 + f64::from(k % 64) / 64.0;
-            drive.since = Double::new(time);
+            drive.since = DoubleDouble::new(time);
             drive.retune(frequency);
             angle = angle.plus(0.375 * frequency);
             time += 0.375;
             let turns = (angle.high / TURN.high).round();
             let expected = angle.sub(TURN.scale(turns)).value();
-            let got = drive.angle(Double::new(time)) - 0.5;
+            let got = drive.angle(DoubleDouble::new(time)) - 0.5;
             let off = ((got - expected) / TURN.high).round() * TURN.high + expected - got;
             assert!(off.abs() < 1e-12, "{off:e} after {k} changes");
         }

@@ -5,7 +5,7 @@ use fearless_simd::Simd;
 use super::coefficients::Coefficients;
 use super::drive::Drive;
 use super::motion::{self, Load, Motion};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::ensemble::{self, LANES, Row};
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
@@ -64,7 +64,7 @@ impl ensemble::Ensemble for Ensemble {
         motion.drive.voltage.is_constant() && motion.drive.prestress.is_constant()
     }
 
-    fn put(&mut self, lane: usize, motion: &Motion, time: &Double, step: f64) {
+    fn put(&mut self, lane: usize, motion: &Motion, time: &DoubleDouble, step: f64) {
         let Coefficients {
             inertia,
             linear,
@@ -90,7 +90,7 @@ impl ensemble::Ensemble for Ensemble {
         self.see_from(lane, motion, time);
     }
 
-    fn see_from(&mut self, lane: usize, motion: &Motion, time: &Double) {
+    fn see_from(&mut self, lane: usize, motion: &Motion, time: &DoubleDouble) {
         self.since_renewal[lane] += 1;
         if self.since_renewal[lane] < RENEWED {
             return;

@@ -2,11 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::double::{Double, veltkamp_split};
+use crate::solver::double_double::{DoubleDouble, veltkamp_split};
 use crate::solver::number::Number;
 
 /// 2π.
-pub(super) const TURN: Double = Double {
+pub(super) const TURN: DoubleDouble = DoubleDouble {
     high: std::f64::consts::TAU,
     low: 2.449_293_598_294_706_4e-16,
 };
@@ -33,7 +33,7 @@ impl Harmonic {
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
     #[inline(always)]
-    pub(super) fn angle(&self, time: Double) -> f64 {
+    pub(super) fn angle(&self, time: DoubleDouble) -> f64 {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
         const PARTS: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
         const EXACT_TURNS: f64 = 1_048_576.0; // 2^20
@@ -51,7 +51,7 @@ impl Harmonic {
 
     /// The angle after more turns than the fast way can reduce.
     #[inline(never)]
-    fn late_angle(&self, time: Double) -> f64 {
+    fn late_angle(&self, time: DoubleDouble) -> f64 {
         let angle = time.scale(self.frequency);
         let turns = (angle.high * (1.0 / TURN.high)).round();
         angle.sub(TURN.scale(turns)).value() + self.phase
@@ -71,7 +71,7 @@ mod tests {
         };
         // A million turns later, to the rounding of the time itself.
         let turns = 1e6;
-        let late = TURN.scale(turns).div(Double::new(0.1471));
+        let late = TURN.scale(turns).div(DoubleDouble::new(0.1471));
         assert!((harmonic.angle(late) - 0.3).abs() < 1e-15);
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::coefficients::Coefficients;
 use super::drive::{Drive, LocalDrive};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::number::Number;
 use crate::solver::{Equation, LocalEquation, Sensitivity, State};
 
@@ -89,7 +89,7 @@ impl Equation for Motion {
     type Local<'a> = LocalMotion<'a>;
 
     #[inline(always)]
-    fn at(&self, time: &Double) -> LocalMotion<'_> {
+    fn at(&self, time: &DoubleDouble) -> LocalMotion<'_> {
         LocalMotion::new(self.coefficients, &self.drive, time)
     }
 
@@ -116,7 +116,7 @@ impl LocalMotion<'_> {
     pub(crate) fn new<'a>(
         coefficients: Coefficients,
         drive: &'a Drive,
-        time: &Double,
+        time: &DoubleDouble,
     ) -> LocalMotion<'a> {
         LocalMotion {
             coefficients,

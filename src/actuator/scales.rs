@@ -22,7 +22,7 @@ use super::device::parameters::MOST_BRANCHES;
 use super::device::{
     Branch, Breakdown, Damping, Device, Elasticity, Locking, Permittivity, Port, Source, Spring,
 };
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::number::{Number, Parameter};
 
@@ -113,7 +113,7 @@ pub struct Scales<P = f64> {
     /// t0 in s.
     pub time: P,
     /// Its value in double length.
-    pub exact_time: Double,
+    pub exact_time: DoubleDouble,
     /// V0 in V.
     pub voltage: P,
     /// Q0 in C.
@@ -134,17 +134,18 @@ impl Scales {
     /// The scales of an actuator.
     #[must_use]
     pub fn of(device: &SiDevice) -> Scales {
-        let ratio = Double::new(device.density).div(Double::new(device.shear_modulus).scale(12.0));
+        let ratio = DoubleDouble::new(device.density)
+            .div(DoubleDouble::new(device.shear_modulus).scale(12.0));
         let exact_time = ratio
             .sqrt()
-            .mul(Double::new(device.layers).scale(device.thickness));
+            .mul(DoubleDouble::new(device.layers).scale(device.thickness));
         Scales::in_time(device, exact_time.value(), exact_time)
     }
 
     /// A time in s, kept as a double-length sum, as a nondimensional one. Divided once, no
     /// rounding adds up from step to step.
     #[must_use]
-    pub fn time(&self, seconds: Double) -> Double {
+    pub fn time(&self, seconds: DoubleDouble) -> DoubleDouble {
         seconds.div(self.exact_time)
     }
 
@@ -175,12 +176,12 @@ impl Scales<Dual> {
     pub fn along(device: &SiDevice<Dual>) -> Scales<Dual> {
         let ratio = device.density / (Dual::constant(12.0) * device.shear_modulus);
         let time = ratio.sqrt() * device.layers * device.thickness;
-        Scales::in_time(device, time, Double::new(time.value()))
+        Scales::in_time(device, time, DoubleDouble::new(time.value()))
     }
 }
 
 impl<P: Parameter> Scales<P> {
-    fn in_time(device: &SiDevice<P>, time: P, exact_time: Double) -> Scales<P> {
+    fn in_time(device: &SiDevice<P>, time: P, exact_time: DoubleDouble) -> Scales<P> {
         let (mu, side) = (device.shear_modulus, device.side);
         let permittivity = device.relative_permittivity * mu.same(VACUUM_PERMITTIVITY);
         let stack = device.layers * device.thickness;

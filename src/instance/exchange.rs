@@ -8,7 +8,7 @@ use super::{Event, Fault, Instance, Simulation, check_time};
 use crate::model::variables::{Access, Kind};
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 /// A host finds the crossing of a limit to a tolerance, from either side of it:
 /// closer than this part of the limit it has been reached.
@@ -18,7 +18,7 @@ const REACHED: f64 = 1e-9;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Exchange<M: Model> {
-    pub(super) time: Double,
+    pub(super) time: DoubleDouble,
     pub(super) state: M::State,
     pub(super) collapse: Option<Collapse<M::Limit>>,
     /// The limit at which the host's last step has ended, where the simulation is to end there:
@@ -40,12 +40,12 @@ pub struct Update {
 }
 
 /// A recording of the extremes from this state on, where the scene asks for one.
-fn recording<M: Model>(scene: &M::Scene, time: Double, state: &M::State) -> Recording {
+fn recording<M: Model>(scene: &M::Scene, time: DoubleDouble, state: &M::State) -> Recording {
     Recording::begin(M::records_extremes(scene), time, M::second_order(state))
 }
 
 impl<M: Model> Exchange<M> {
-    pub(super) fn new(scene: &M::Scene, time: Double) -> Exchange<M> {
+    pub(super) fn new(scene: &M::Scene, time: DoubleDouble) -> Exchange<M> {
         let state = M::start(scene);
         Exchange {
             time,
@@ -197,7 +197,7 @@ impl<M: Model> Instance<M> {
     pub fn set_time(&mut self, time: f64) -> Result<(), Fault> {
         check_time("time", time)?;
         let exchange = self.exchange()?;
-        exchange.time = Double::new(time);
+        exchange.time = DoubleDouble::new(time);
         exchange.arrival = None;
         Ok(())
     }

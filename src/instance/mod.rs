@@ -23,7 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Model;
 use crate::shortest::Shortest;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
@@ -151,7 +151,7 @@ impl<M: Model> Instance<M> {
             tolerance: kept,
         };
         // Derivatives of inputs that are set before count from the start time.
-        M::begin_inputs(&mut self.scene, Double::new(start_time));
+        M::begin_inputs(&mut self.scene, DoubleDouble::new(start_time));
         Ok((kept != wanted).then(|| Event {
             warning: true,
             text: format!(
@@ -171,7 +171,7 @@ impl<M: Model> Instance<M> {
     /// Error where the start stretch does not lie between the limits.
     pub fn exit_initialization(&mut self) -> Result<(), Fault> {
         M::check_start(&self.scene).map_err(Fault::error)?;
-        let time = Double::new(self.experiment.start_time);
+        let time = DoubleDouble::new(self.experiment.start_time);
         M::begin_inputs(&mut self.scene, time);
         match self.interface {
             Interface::CoSimulation => {

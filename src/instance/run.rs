@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::{Event, Fault, Instance, Severity, Simulation};
 use crate::model::variables::Access;
-use crate::model::{AtLimit, Collapse, Model, Motion};
+use crate::model::{AtLimit, Collapse, Integration, Model};
 use crate::shortest::Shortest;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::trajectory::{Failure, Progress};
 
 /// Communication steps that can be followed: powers of shorter or longer ones are not numbers
@@ -41,8 +41,8 @@ fn allowance(step: f64, time: f64) -> f64 {
 #[serde(bound = "")]
 pub struct Run<M: Model> {
     /// The present time, to which the motion has come.
-    clock: Double,
-    motion: M::Motion,
+    clock: DoubleDouble,
+    motion: M::Integration,
     collapse: Option<Collapse<M::Limit>>,
     /// The scene has changed since the trajectory has followed it.
     stale: bool,
@@ -53,10 +53,10 @@ pub struct Run<M: Model> {
 }
 
 impl<M: Model> Run<M> {
-    pub(super) fn new(scene: &M::Scene, time: Double, tolerance: f64) -> Run<M> {
+    pub(super) fn new(scene: &M::Scene, time: DoubleDouble, tolerance: f64) -> Run<M> {
         Run {
             clock: time,
-            motion: M::Motion::begin(scene, &time, tolerance),
+            motion: M::Integration::begin(scene, &time, tolerance),
             collapse: None,
             stale: false,
             drift: 0.0,
@@ -66,7 +66,9 @@ impl<M: Model> Run<M> {
 
     /// Whether the numbers fit together as those of a motion of the scene.
     pub(super) fn is_valid(&self, scene: &M::Scene, tolerance: f64) -> bool {
-        let collapsed = self.collapse.map_or(Double::ZERO, |collapse| collapse.time);
+        let collapsed = self
+            .collapse
+            .map_or(DoubleDouble::ZERO, |collapse| collapse.time);
         self.clock.is_finite()
             && self.motion.is_valid(scene, tolerance)
             && collapsed.is_finite()
@@ -77,13 +79,13 @@ impl<M: Model> Run<M> {
     /// The present time.
     #[must_use]
     #[inline]
-    pub fn time(&self) -> &Double {
+    pub fn time(&self) -> &DoubleDouble {
         &self.clock
     }
 
     /// The motion so far.
     #[must_use]
-    pub fn motion(&self) -> &M::Motion {
+    pub fn motion(&self) -> &M::Integration {
         &self.motion
     }
 
@@ -124,7 +126,7 @@ impl<M: Model> Run<M> {
         if !(shortest..=longest).contains(&step) {
             return Err(not_a_step(step));
         }
-        let ahead = -self.clock.since(Double::new(current));
+        let ahead = -self.clock.since(DoubleDouble::new(current));
         if self.cut_from == Some(current) {
             return Err(self.asked_again(current));
         }
@@ -184,7 +186,7 @@ impl<M: Model> Run<M> {
     /// depends on time, it restarts there.
     pub(super) fn set_clock(&mut self, scene: &M::Scene, current: f64, deviation: f64) {
         self.drift += deviation;
-        self.clock = Double::new(current);
+        self.clock = DoubleDouble::new(current);
         self.stale |= M::depends_on_time(scene);
     }
 
@@ -202,7 +204,7 @@ impl<M: Model> Run<M> {
     ) -> Result<Option<Event>, Fault> {
         self.cut_from = None;
         if self.collapse.is_some() {
-            self.clock = self.clock.add(Double::new(step));
+            self.clock = self.clock.add(DoubleDouble::new(step));
             return Ok(None);
         }
         if self.stale {
@@ -218,7 +220,7 @@ impl<M: Model> Run<M> {
                 let choice = M::choice(limit);
                 match M::at_limit(scene, limit) {
                     AtLimit::Hold => {
-                        self.clock = time.add(Double::new(step).plus(-after));
+                        self.clock = time.add(DoubleDouble::new(step).plus(-after));
                         Ok(Some(Event {
                             warning: false,
                             text: format!("{text}; it stays there ({choice} = hold)"),
@@ -308,7 +310,7 @@ fn follow_clock<M: Model>(
                 of(scene).shift(deviation);
             }
         }
-        M::begin_inputs(scene, Double::new(current));
+        M::begin_inputs(scene, DoubleDouble::new(current));
     }
     run.set_clock(scene, current, deviation);
 }

@@ -7,7 +7,7 @@ use crate::actuator::drive::Polynomial;
 use crate::model::variables::{Access, Kind, Variability, Variable};
 use crate::model::{Model, Place, View};
 use crate::shortest::Shortest;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -333,7 +333,7 @@ impl<M: Model> Instance<M> {
     }
 
     /// The present communication point; none before the motion has begun.
-    fn now(&self) -> Option<Double> {
+    fn now(&self) -> Option<DoubleDouble> {
         match &self.simulation {
             Simulation::NotBegun => None,
             Simulation::Run(run) => Some(*run.time()),

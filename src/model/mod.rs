@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use self::variables::{Alias, Variable};
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limits;
@@ -58,7 +58,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     type State: Copy + Debug + PartialEq + Serialize + DeserializeOwned;
 
     /// The motion, where the model integrates it itself.
-    type Motion: Motion<Self>;
+    type Integration: Integration<Self>;
 
     /// What is recorded beside the extremes of a motion that the host integrates.
     type Account: Account<Self>;
@@ -94,13 +94,13 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     fn inputs_are_held(scene: &Self::Scene) -> bool;
 
     /// Counts the time of the inputs from `time` on; the inputs stay the same functions of time.
-    fn rebase_inputs(scene: &mut Self::Scene, time: Double);
+    fn rebase_inputs(scene: &mut Self::Scene, time: DoubleDouble);
 
     /// Makes the time of the inputs count from `time`; their numbers are kept.
-    fn begin_inputs(scene: &mut Self::Scene, time: Double);
+    fn begin_inputs(scene: &mut Self::Scene, time: DoubleDouble);
 
     /// The time from which that of the inputs counts.
-    fn inputs_since(scene: &Self::Scene) -> &Double;
+    fn inputs_since(scene: &Self::Scene) -> &DoubleDouble;
 
     /// Whether what drives the motion depends on time.
     fn depends_on_time(scene: &Self::Scene) -> bool;
@@ -120,7 +120,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// towards it, or behind the state.
     fn limit_reached(
         scene: &Self::Scene,
-        time: &Double,
+        time: &DoubleDouble,
         state: &Self::State,
         tolerance: f64,
     ) -> Option<Self::Limit>;
@@ -171,20 +171,20 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 }
 
 /// A motion that the model integrates, from communication point to communication point.
-pub trait Motion<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
+pub trait Integration<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     /// The motion of a scene from its start at `time` on.
-    fn begin(scene: &M::Scene, time: &Double, tolerance: f64) -> Self;
+    fn begin(scene: &M::Scene, time: &DoubleDouble, tolerance: f64) -> Self;
 
     /// Follows the motion for the time `step` > 0 from `clock`, the time to which it has come, and
     /// moves the clock to where it has come then. The scene is the same as in the calls before,
-    /// back to the last [`Motion::restart`].
+    /// back to the last [`Integration::restart`].
     ///
     /// # Errors
     /// [`Failure`] where the integration cannot go on; the motion then stands where it ended.
     fn advance(
         &mut self,
         scene: &M::Scene,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress<M::Limit>, Failure>;
 
@@ -214,13 +214,13 @@ pub trait Account<M: Model>:
     Copy + Debug + Default + PartialEq + Serialize + DeserializeOwned
 {
     /// Records from this state on.
-    fn begin(scene: &M::Scene, time: Double, state: &M::State) -> Self;
+    fn begin(scene: &M::Scene, time: DoubleDouble, state: &M::State) -> Self;
 
     /// Records the host's step that has come to this state.
-    fn include_step(&mut self, scene: &M::Scene, time: Double, state: &M::State);
+    fn include_step(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State);
 
     /// Records this state alone: it, or an input, may have jumped.
-    fn include(&mut self, scene: &M::Scene, time: Double, state: &M::State);
+    fn include(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State);
 
     /// Whether the numbers can be those of an account.
     fn is_valid(&self) -> bool;
@@ -228,11 +228,11 @@ pub trait Account<M: Model>:
 
 /// Nothing is recorded.
 impl<M: Model> Account<M> for () {
-    fn begin(_scene: &M::Scene, _time: Double, _state: &M::State) {}
+    fn begin(_scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
 
-    fn include_step(&mut self, _scene: &M::Scene, _time: Double, _state: &M::State) {}
+    fn include_step(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
 
-    fn include(&mut self, _scene: &M::Scene, _time: Double, _state: &M::State) {}
+    fn include(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
 
     fn is_valid(&self) -> bool {
         true
@@ -284,7 +284,7 @@ pub struct Collapse<L> {
     /// The limit.
     pub limit: L,
     /// Time of the model.
-    pub time: Double,
+    pub time: DoubleDouble,
 }
 
 /// Where the state of the motion is known from.
@@ -299,7 +299,7 @@ pub enum Place<'a, M: Model> {
         account: M::Account,
     },
     /// The present of this motion.
-    On(&'a M::Motion),
+    On(&'a M::Integration),
 }
 
 /// What a host can read at the present communication point. Each quantity is computed when it is
@@ -310,14 +310,14 @@ pub struct View<'a, M: Model> {
     /// The state of the motion.
     pub place: Place<'a, M>,
     /// Time of the model.
-    pub time: &'a Double,
+    pub time: &'a DoubleDouble,
     /// Whether and when the motion came to a limit.
     pub collapse: Option<&'a Collapse<M::Limit>>,
 }
 
 impl<M: Model> Place<'_, M> {
     /// A state of which nothing else is known.
-    pub fn of_state(time: Double, state: M::State) -> Self {
+    pub fn of_state(time: DoubleDouble, state: M::State) -> Self {
         Place::At {
             state,
             record: Recording::begin(false, time, M::second_order(&state)),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 
@@ -12,14 +12,14 @@ use crate::solver::limits::Limits;
 pub struct Recording {
     /// The extremes, where they are recorded.
     pub extremes: Option<Extremes>,
-    time: Double,
+    time: DoubleDouble,
     state: State,
 }
 
 impl Recording {
     /// Records from this state on, or nothing.
     #[must_use]
-    pub fn begin(recorded: bool, time: Double, state: State) -> Recording {
+    pub fn begin(recorded: bool, time: DoubleDouble, state: State) -> Recording {
         Recording {
             extremes: recorded.then(|| Extremes::at(state.position)),
             time,
@@ -29,7 +29,7 @@ impl Recording {
 
     /// Records the host's step that has come to this state. Inside the step the motion is that on
     /// the cubic through both ends.
-    pub fn include_step(&mut self, limits: Limits, time: Double, state: State) {
+    pub fn include_step(&mut self, limits: Limits, time: DoubleDouble, state: State) {
         if let Some(turn) = turn_between(self.state, state, time.since(self.time)) {
             self.include_position(limits, turn);
         }
@@ -37,7 +37,7 @@ impl Recording {
     }
 
     /// Records this state alone: it may have jumped.
-    pub fn include(&mut self, limits: Limits, time: Double, state: State) {
+    pub fn include(&mut self, limits: Limits, time: DoubleDouble, state: State) {
         self.include_position(limits, state.position);
         (self.time, self.state) = (time, state);
     }

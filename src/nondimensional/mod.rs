@@ -16,7 +16,7 @@ use crate::nondimensional::scene::Scene;
 use crate::nondimensional::view::{Quantities, Sample};
 use crate::shortest::Shortest;
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
@@ -47,7 +47,7 @@ impl Model for Nondimensional {
 
     type Scene = Scene;
     type State = State;
-    type Motion = Trajectory;
+    type Integration = Trajectory;
     type Account = ();
     type Limit = Limit;
     type Sample<N: Number> = Sample<N>;
@@ -86,17 +86,17 @@ impl Model for Nondimensional {
     }
 
     #[inline]
-    fn rebase_inputs(scene: &mut Scene, time: Double) {
+    fn rebase_inputs(scene: &mut Scene, time: DoubleDouble) {
         scene.drive.rebase(time);
     }
 
     #[inline]
-    fn begin_inputs(scene: &mut Scene, time: Double) {
+    fn begin_inputs(scene: &mut Scene, time: DoubleDouble) {
         scene.drive.since = time;
     }
 
     #[inline]
-    fn inputs_since(scene: &Scene) -> &Double {
+    fn inputs_since(scene: &Scene) -> &DoubleDouble {
         &scene.drive.since
     }
 
@@ -124,7 +124,7 @@ impl Model for Nondimensional {
 
     fn limit_reached(
         scene: &Scene,
-        _time: &Double,
+        _time: &DoubleDouble,
         state: &State,
         tolerance: f64,
     ) -> Option<Limit> {

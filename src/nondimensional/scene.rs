@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use crate::actuator::drive::{Harmonic, Polynomial};
 use crate::actuator::motion::LocalMotion;
 use crate::actuator::{Coefficients, Drive, Motion, Parameters};
-use crate::model::{self, AtLimit};
+use crate::model::{AtLimit, Integration};
 use crate::nondimensional::Nondimensional;
 use crate::shortest::Shortest;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::limits::Limits;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, State};
@@ -58,7 +58,7 @@ impl Scene {
         record_extremes: false,
         extremes_window: 0.0,
         drive: Drive {
-            since: Double::ZERO,
+            since: DoubleDouble::ZERO,
             voltage: Polynomial::constant(0.0),
             prestress: Polynomial::constant(0.0),
             harmonic: Harmonic::OFF,
@@ -101,7 +101,7 @@ impl Equation for Scene {
     type Local<'a> = LocalMotion<'a>;
 
     #[inline(always)]
-    fn at(&self, time: &Double) -> LocalMotion<'_> {
+    fn at(&self, time: &DoubleDouble) -> LocalMotion<'_> {
         LocalMotion::new(Coefficients::fold(&self.parameters), &self.drive, time)
     }
 
@@ -117,8 +117,8 @@ impl Equation for Scene {
     }
 }
 
-impl model::Motion<Nondimensional> for Trajectory {
-    fn begin(scene: &Scene, _time: &Double, tolerance: f64) -> Trajectory {
+impl Integration<Nondimensional> for Trajectory {
+    fn begin(scene: &Scene, _time: &DoubleDouble, tolerance: f64) -> Trajectory {
         let trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
         if scene.records_extremes() {
             trajectory.recording_extremes()
@@ -131,7 +131,7 @@ impl model::Motion<Nondimensional> for Trajectory {
     fn advance(
         &mut self,
         scene: &Scene,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
         Trajectory::advance(self, scene, clock, step)

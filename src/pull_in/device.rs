@@ -23,7 +23,7 @@ use crate::actuator::device::equation::Load;
 use crate::actuator::device::parameters::MOST_BRANCHES;
 use crate::actuator::device::{Branch, Damping, Device, Elasticity, LocalDevice, Port, Source};
 use crate::solver::coupled::{MOST_STATES, Stage};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::number::Number;
 
@@ -110,7 +110,7 @@ struct Curves {
     /// Its port as it is.
     port: Port,
     prestress: f64,
-    wall: Option<Double>,
+    wall: Option<DoubleDouble>,
 }
 
 impl Curves {
@@ -160,10 +160,10 @@ impl Curves {
         outer.chain(inner)
     }
 
-    fn origin(&self, point: Point) -> Double {
+    fn origin(&self, point: Point) -> DoubleDouble {
         match self.wall {
             Some(wall) if point.near_wall => wall,
-            _ => Double::ZERO,
+            _ => DoubleDouble::ZERO,
         }
     }
 
@@ -172,7 +172,7 @@ impl Curves {
         f(&LocalDevice::new(
             &self.still,
             &drive,
-            &Double::ZERO,
+            &DoubleDouble::ZERO,
             &self.origin(point),
         ))
     }

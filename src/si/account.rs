@@ -9,7 +9,7 @@ use crate::actuator::drive::Polynomial;
 use crate::model::{Account, Place, View};
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 /// The energies exchanged, the time of breakdown, and where the host's last step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,8 +17,8 @@ pub struct SiAccount {
     /// Energies lost and supplied since the start in J, where they are recorded.
     pub exchanged: [f64; MOST_INTEGRALS],
     /// When the true field was first seen at breakdown, where the motion goes on there.
-    pub breakdown: Option<Double>,
-    time: Double,
+    pub breakdown: Option<DoubleDouble>,
+    time: DoubleDouble,
     state: SiState,
     inputs: Inputs,
 }
@@ -34,7 +34,7 @@ struct Inputs {
 }
 
 impl Inputs {
-    fn of(scene: &SiScene, time: Double) -> Inputs {
+    fn of(scene: &SiScene, time: DoubleDouble) -> Inputs {
         let offset = time.since(scene.since);
         let scales = scene.scales();
         let drive = scene.drive(&scales);
@@ -52,7 +52,7 @@ impl Default for SiAccount {
         SiAccount {
             exchanged: [0.0; MOST_INTEGRALS],
             breakdown: None,
-            time: Double::ZERO,
+            time: DoubleDouble::ZERO,
             state: SiState {
                 motion: State {
                     position: 1.0,
@@ -67,14 +67,14 @@ impl Default for SiAccount {
 }
 
 impl Account<Si> for SiAccount {
-    fn begin(scene: &SiScene, time: Double, state: &SiState) -> SiAccount {
+    fn begin(scene: &SiScene, time: DoubleDouble, state: &SiState) -> SiAccount {
         let mut account = SiAccount {
             time,
             state: *state,
             ..SiAccount::default()
         };
         if scene.record_energy {
-            let basis = Basis::of(scene, &time, Double::ZERO);
+            let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
             let before = scene.source_before(&basis.scales, basis.capacitance(state));
             account.book_step(&basis, state, before);
             account.inputs = Inputs::of(scene, time);
@@ -83,16 +83,16 @@ impl Account<Si> for SiAccount {
         account
     }
 
-    fn include_step(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+    fn include_step(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         if scene.record_energy && time.since(self.time) > 0.0 {
             self.integrate(scene, time, state);
         }
         self.arrive(scene, time, state);
     }
 
-    fn include(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+    fn include(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         if scene.record_energy {
-            let basis = Basis::of(scene, &time, Double::ZERO);
+            let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
             let before = self.inputs.total / basis.scales.source(scene.source());
             self.book_step(&basis, state, before);
             self.inputs = Inputs::of(scene, time);
@@ -120,12 +120,12 @@ impl Account<Si> for SiAccount {
 }
 
 impl SiAccount {
-    fn arrive(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+    fn arrive(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         (self.time, self.state) = (time, *state);
         self.look_for_breakdown(scene, time, state);
     }
 
-    fn look_for_breakdown(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+    fn look_for_breakdown(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         let awaited = scene.device.breakdown_field > 0.0 && self.breakdown.is_none();
         if !awaited || scene.at_breakdown() != OnBreakdown::Flag {
             return;
@@ -156,9 +156,9 @@ impl SiAccount {
 
     /// Sums up the powers over the host's step by three Gauss points: each state on the cubic
     /// through its values and slopes at both ends, each input on the straight line between its own.
-    fn integrate(&mut self, scene: &SiScene, time: Double, state: &SiState) {
+    fn integrate(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         const NODE: f64 = 0.387_298_334_620_741_7; // √15/10
-        let mut basis = Basis::of(scene, &self.time, Double::ZERO);
+        let mut basis = Basis::of(scene, &self.time, DoubleDouble::ZERO);
         let span = time.since(self.time) / basis.scales.time;
         let (before, now) = (self.inputs, Inputs::of(scene, time));
         let line = |from: f64, to: f64, unit: f64| {

@@ -3,13 +3,13 @@
 
 mod account;
 mod along;
-mod course;
 mod folded;
 mod motion;
 mod sample;
 mod scene;
 mod table;
 mod thresholds;
+mod trajectory;
 mod view;
 
 pub use account::SiAccount;
@@ -25,7 +25,7 @@ use crate::model::variables::{self, Access, Alias, Kind, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
@@ -70,7 +70,7 @@ impl Model for Si {
 
     type Scene = SiScene;
     type State = SiState;
-    type Motion = SiMotion;
+    type Integration = SiMotion;
     type Account = SiAccount;
     type Limit = SiLimit;
     type Sample<N: Number> = Sample<N>;
@@ -99,7 +99,7 @@ impl Model for Si {
         scene.start
     }
 
-    fn rebase_inputs(scene: &mut SiScene, time: Double) {
+    fn rebase_inputs(scene: &mut SiScene, time: DoubleDouble) {
         let shift = time.since(scene.since);
         scene.since = time;
         scene.force.shift(shift);
@@ -108,11 +108,11 @@ impl Model for Si {
         }
     }
 
-    fn begin_inputs(scene: &mut SiScene, time: Double) {
+    fn begin_inputs(scene: &mut SiScene, time: DoubleDouble) {
         scene.since = time;
     }
 
-    fn inputs_since(scene: &SiScene) -> &Double {
+    fn inputs_since(scene: &SiScene) -> &DoubleDouble {
         &scene.since
     }
 
@@ -156,7 +156,7 @@ impl Model for Si {
 
     fn limit_reached(
         scene: &SiScene,
-        time: &Double,
+        time: &DoubleDouble,
         state: &SiState,
         tolerance: f64,
     ) -> Option<SiLimit> {

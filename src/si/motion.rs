@@ -5,26 +5,26 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::course::Course;
 use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState};
+use super::trajectory::SiTrajectory;
 use super::{Si, SiLimit};
 use crate::actuator::device::{DeviceMotion, Exchanged, LocalDevice};
 use crate::actuator::scales::Scales;
-use crate::model::Motion;
+use crate::model::Integration;
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::coupled::{self, CoupledEquation, Stage};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::trajectory::{Failure, Progress};
 
 /// A motion in SI units.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SiMotion {
-    course: Course,
-    /// By how much the course is ahead of the clock: the rounding of its last step, nondimensional.
+    trajectory: SiTrajectory,
+    /// By how much the trajectory is ahead of the clock: the rounding of its last step, nondimensional.
     lead: f64,
-    /// What the course follows, nondimensional.
+    /// What the trajectory follows, nondimensional.
     motion: DeviceMotion,
     scales: Scales,
     tolerance: f64,
@@ -35,22 +35,22 @@ pub struct SiMotion {
     /// The dashpots of absent branches.
     dashpots: [f64; BRANCHES],
     /// When the true field first reached breakdown, in s.
-    breakdown: Option<Double>,
-    /// The extremes before the course began.
+    breakdown: Option<DoubleDouble>,
+    /// The extremes before the trajectory began.
     earlier: Option<Extremes>,
 }
 
 impl SiMotion {
     /// Where the stretch is counted from, and the stretch from there.
     #[must_use]
-    pub fn stretch_from_origin(&self) -> (Double, f64) {
-        self.course.position_from_origin()
+    pub fn stretch_from_origin(&self) -> (DoubleDouble, f64) {
+        self.trajectory.position_from_origin()
     }
 
     /// The stretch and its rate in 1/s.
     #[must_use]
     pub fn stretch(&self) -> State {
-        let State { position, rate } = self.course.state();
+        let State { position, rate } = self.trajectory.state();
         State {
             position,
             rate: rate / self.scales.time,
@@ -60,7 +60,7 @@ impl SiMotion {
     /// The present state in SI units.
     #[must_use]
     pub fn state(&self) -> SiState {
-        let states = self.course.internal();
+        let states = self.trajectory.internal();
         let device = &self.motion.device;
         let mut places = states.into_iter();
         let charge = if device.has_charge_state() {
@@ -84,7 +84,7 @@ impl SiMotion {
     /// The derivative of the charge in A, from its polynomial, where it is a state that has moved.
     #[must_use]
     pub fn charging(&self) -> Option<f64> {
-        let Course::Coupled(trajectory) = &self.course else {
+        let SiTrajectory::Coupled(trajectory) = &self.trajectory else {
             return None;
         };
         let has_charge = self.motion.device.has_charge_state() && !self.stale;
@@ -95,13 +95,18 @@ impl SiMotion {
     /// Energies lost and supplied since the start in J; 0 where they are not recorded.
     #[must_use]
     pub fn exchanged(&self) -> Exchanged {
-        Exchanged::from_integrals(&self.course.integrals().map(|sum| sum * self.scales.energy))
+        Exchanged::from_integrals(
+            &self
+                .trajectory
+                .integrals()
+                .map(|sum| sum * self.scales.energy),
+        )
     }
 
     /// The extremes of the stretch, where they are recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
-        let mut extremes = self.course.extremes()?;
+        let mut extremes = self.trajectory.extremes()?;
         if let Some(Extremes { lowest, highest }) = self.earlier {
             extremes.include(lowest);
             extremes.include(highest);
@@ -111,29 +116,33 @@ impl SiMotion {
 
     /// When the true field first reached breakdown.
     #[must_use]
-    pub fn breakdown(&self) -> Option<Double> {
+    pub fn breakdown(&self) -> Option<DoubleDouble> {
         self.breakdown
     }
 
-    /// The nondimensional time to which the course has come, the clock being at `time`.
-    fn reached(&self, time: &Double) -> Double {
+    /// The nondimensional time to which the trajectory has come, the clock being at `time`.
+    fn reached(&self, time: &DoubleDouble) -> DoubleDouble {
         self.scales.time(*time).plus(self.lead)
     }
 
     /// The present as the motion that is followed sees it, the clock being at `time`.
-    fn at_present<T>(&self, time: &Double, look: impl FnOnce(&LocalDevice, &Stage) -> T) -> T {
+    fn at_present<T>(
+        &self,
+        time: &DoubleDouble,
+        look: impl FnOnce(&LocalDevice, &Stage) -> T,
+    ) -> T {
         let (origin, position) = self.stretch_from_origin();
         let stage = Stage {
             position,
-            rate: self.course.state().rate,
-            internal: self.course.internal(),
+            rate: self.trajectory.state().rate,
+            internal: self.trajectory.internal(),
         };
         look(&self.motion.at(&self.reached(time), &origin), &stage)
     }
 
-    /// Follows what the scene has become. Where only inputs have changed, the course goes on
+    /// Follows what the scene has become. Where only inputs have changed, the trajectory goes on
     /// with what it knows; where the actuator has, it begins anew from the state in SI units.
-    fn refold(&mut self, scene: &SiScene, time: &Double) {
+    fn refold(&mut self, scene: &SiScene, time: &DoubleDouble) {
         use crate::solver::coupled::LocalCoupledEquation;
         self.stale = false;
         let (motion, scales) = (scene.motion(), scene.scales());
@@ -144,7 +153,7 @@ impl SiMotion {
             let records = self.motion.records_energy;
             let before = records.then(|| self.at_present(time, |local, _| local.load(0.0).source));
             self.motion.drive = motion.drive;
-            self.course.restart();
+            self.trajectory.restart();
             if let Some(before) = before {
                 self.book_step(time, before);
             }
@@ -159,35 +168,35 @@ impl SiMotion {
             ..self.state()
         };
         let (exchanged, extremes) = (self.exchanged(), self.extremes());
-        self.course
+        self.trajectory
             .begin_anew(scene, &motion, &scales, &state, self.tolerance);
         self.lead = 0.0;
         (self.charge, self.dashpots) = (state.charge, state.dashpots);
         (self.motion, self.scales) = (motion, scales);
         self.earlier = extremes;
-        self.course.record_extremes_anew(extremes.is_some());
-        self.course
+        self.trajectory.record_extremes_anew(extremes.is_some());
+        self.trajectory
             .book(&exchanged.all().map(|sum| sum / scales.energy));
     }
 
     /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
-    fn book_step(&mut self, time: &Double, before: f64) {
+    fn book_step(&mut self, time: &DoubleDouble, before: f64) {
         if !self.motion.records_energy {
             return;
         }
         let exchanged =
             self.at_present(time, |local, stage| local.exchanged_by_step(before, stage));
-        self.course.book(&exchanged.all());
+        self.trajectory.book(&exchanged.all());
     }
 }
 
-impl Motion<Si> for SiMotion {
-    fn begin(scene: &SiScene, time: &Double, tolerance: f64) -> SiMotion {
+impl Integration<Si> for SiMotion {
+    fn begin(scene: &SiScene, time: &DoubleDouble, tolerance: f64) -> SiMotion {
         scene.thresholds.prepare();
         let (motion, scales) = (scene.motion(), scene.scales());
-        let course = Course::of(scene, &motion, &scales, &scene.start, tolerance);
+        let trajectory = SiTrajectory::of(scene, &motion, &scales, &scene.start, tolerance);
         let mut begun = SiMotion {
-            course,
+            trajectory,
             lead: 0.0,
             motion,
             scales,
@@ -198,7 +207,7 @@ impl Motion<Si> for SiMotion {
             breakdown: None,
             earlier: None,
         };
-        Motion::record_anew(&mut begun, scene);
+        Integration::record_anew(&mut begun, scene);
         // An ideal source charges the membrane at once.
         let capacitance = begun.at_present(time, |local, stage| {
             local.capacitance(local.stretch(stage.position))
@@ -211,7 +220,7 @@ impl Motion<Si> for SiMotion {
     fn advance(
         &mut self,
         scene: &SiScene,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress<SiLimit>, Failure> {
         if self.stale {
@@ -224,7 +233,7 @@ impl Motion<Si> for SiMotion {
         loop {
             let rest = end.since(reached);
             let progress = if rest > 0.0 {
-                self.course.advance(&self.motion, &mut reached, rest)
+                self.trajectory.advance(&self.motion, &mut reached, rest)
             } else {
                 Ok(Progress::Whole)
             };
@@ -243,7 +252,7 @@ impl Motion<Si> for SiMotion {
                     coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
                     coupled::Event::Margin => {
                         self.breakdown = self.breakdown.or(Some(*clock));
-                        if let Course::Coupled(trajectory) = &mut self.course {
+                        if let SiTrajectory::Coupled(trajectory) = &mut self.trajectory {
                             trajectory.pass_margin();
                         }
                         if scene.at_breakdown() == OnBreakdown::Flag {
@@ -271,16 +280,16 @@ impl Motion<Si> for SiMotion {
     fn record_anew(&mut self, scene: &SiScene) {
         let records = scene.records_extremes();
         self.earlier = None;
-        self.course.record_extremes_anew(records);
+        self.trajectory.record_extremes_anew(records);
     }
 
     fn is_valid(&self, scene: &SiScene, tolerance: f64) -> bool {
-        let valid = self.course.is_valid(scene, tolerance);
+        let valid = self.trajectory.is_valid(scene, tolerance);
         let positive = |number: f64| number > 0.0 && number.is_finite();
         valid
             && self.tolerance == tolerance
             && self.lead.is_finite()
-            && self.motion.is_plain() == self.course.is_plain()
+            && self.motion.is_plain() == self.trajectory.is_plain()
             && self.scales.are_valid()
             && self.charge.is_finite()
             && self.dashpots.into_iter().all(positive)

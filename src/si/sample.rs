@@ -9,7 +9,7 @@ use crate::actuator::scales::Scales;
 use crate::model::View;
 use crate::solver::State;
 use crate::solver::coupled::Stage;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::number::{Number, Parameter, ParameterOf};
 
@@ -147,13 +147,13 @@ pub(super) struct Basis<P = f64> {
     pub scales: Scales<P>,
     pub drive: crate::actuator::Drive,
     /// Time of the model, nondimensional.
-    pub time: Double,
+    pub time: DoubleDouble,
     /// Where the stretch is counted from.
-    pub origin: Double,
+    pub origin: DoubleDouble,
 }
 
 impl Basis {
-    pub fn of(scene: &SiScene, time: &Double, origin: Double) -> Basis {
+    pub fn of(scene: &SiScene, time: &DoubleDouble, origin: DoubleDouble) -> Basis {
         let folded = scene.folded();
         Basis {
             stack: folded.stack,

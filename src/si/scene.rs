@@ -11,7 +11,7 @@ use crate::actuator::scales::{Scales, SiDevice, SiElasticity};
 use crate::model::AtLimit;
 use crate::solver::State;
 use crate::solver::coupled::MOST_STATES;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Jet;
 use crate::solver::limits::Limits;
 use crate::solver::number::Parameter;
@@ -66,7 +66,7 @@ pub struct SiScene {
     /// 1, 2, 3 are voltage, current, charge.
     pub source_number: f64,
     /// Time in s at which the inputs were set.
-    pub since: Double,
+    pub since: DoubleDouble,
     /// Voltage in V, current in A, charge in C, of which the source imposes one.
     pub sources: [Polynomial; 3],
     /// The force on each pair of opposite edges, in N.
@@ -122,7 +122,7 @@ impl SiScene {
             extremes_window: 0.0,
             record_energy: false,
             source_number: 0.0,
-            since: Double::ZERO,
+            since: DoubleDouble::ZERO,
             sources: [Polynomial::constant(0.0); 3],
             force: Polynomial::constant(0.0),
             alternating: [0.0; 3],

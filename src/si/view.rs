@@ -10,7 +10,7 @@ use crate::model::{AtLimit, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, Stage};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 
@@ -66,7 +66,7 @@ impl View<'_, Si> {
         let held = matches!(self.held(), Some(SiLimit::Stretch(_)));
         let (origin, position) = match self.place {
             Place::On(motion) if !held => motion.stretch_from_origin(),
-            _ => (Double::ZERO, state.motion.position),
+            _ => (DoubleDouble::ZERO, state.motion.position),
         };
         let basis = Basis::of(self.scene, self.time, origin);
         let stage = basis.stage(&state, position);

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::collocation::Series;
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::position_origin::PositionOrigin;
 use super::roots::crossing;
 use super::tables::{Columns, GAUSS_16};
@@ -218,7 +218,7 @@ pub const CAPACITY: usize = 64;
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct KeptStep<O> {
     /// Time at which it begins, counted from the origin of time.
-    pub begin: Double,
+    pub begin: DoubleDouble,
     /// Where its positions are counted from.
     pub origin: O,
     /// The motion from there on.
@@ -227,7 +227,7 @@ pub struct KeptStep<O> {
 
 impl<O> KeptStep<O> {
     /// Time at which it ends.
-    pub fn end(&self) -> Double {
+    pub fn end(&self) -> DoubleDouble {
         self.begin.plus(self.segment.length())
     }
 }
@@ -301,13 +301,13 @@ impl<O> History<O> {
 
     /// The end of the last step.
     #[inline]
-    pub fn end(&self) -> Double {
-        self.steps.last().map_or(Double::ZERO, KeptStep::end)
+    pub fn end(&self) -> DoubleDouble {
+        self.steps.last().map_or(DoubleDouble::ZERO, KeptStep::end)
     }
 
     /// The step that holds `time`, looked for from the step `near` on. Of two that meet at `time`,
     /// the earlier one if `near` is not after it.
-    pub fn find(&self, time: Double, near: usize) -> usize {
+    pub fn find(&self, time: DoubleDouble, near: usize) -> usize {
         let steps = self.steps();
         let mut index = near;
         while index + 1 < steps.len() && time.since(steps[index + 1].begin) > 0.0 {
@@ -342,7 +342,7 @@ impl<O: PositionOrigin> TryFrom<Vec<KeptStep<O>>> for History<O> {
                         && (step.origin != last.origin
                             || step.segment.begins_in(last.segment.end()))
                 }
-                None => step.begin == Double::ZERO,
+                None => step.begin == DoubleDouble::ZERO,
             };
             if !(step.segment.is_valid() && step.origin.is_finite() && follows) {
                 return Err("a step of the trajectory is damaged");

@@ -17,7 +17,7 @@
 pub mod collocation;
 pub mod coupled;
 pub mod dense_output;
-pub mod double;
+pub mod double_double;
 mod endpoint;
 pub mod ensemble;
 pub mod extremes;
@@ -40,7 +40,7 @@ pub mod trajectory;
 
 use serde::{Deserialize, Serialize};
 
-use double::Double;
+use double_double::DoubleDouble;
 use number::Number;
 
 /// Position x and rate x' of the motion.
@@ -61,11 +61,11 @@ pub trait Equation {
         Self: 'a;
 
     /// The equation with the origin of time moved to `time`.
-    fn at(&self, time: &Double) -> Self::Local<'_>;
+    fn at(&self, time: &DoubleDouble) -> Self::Local<'_>;
 
     /// [`Equation::at`] as a call, not inlined: for code in which size counts more than speed.
     #[inline(never)]
-    fn seen_from(&self, time: &Double) -> Self::Local<'_> {
+    fn seen_from(&self, time: &DoubleDouble) -> Self::Local<'_> {
         self.at(time)
     }
 

@@ -3,20 +3,20 @@
 use serde::{Deserialize, Serialize};
 
 use super::dense_output::VALIDATION_TOLERANCE;
-use super::double::Double;
+use super::double_double::DoubleDouble;
 
 /// The motion between two turning points of an autonomous, time-reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Orbit {
-    first_turn: Double,
-    second_turn: Double,
-    period: Double,
+    first_turn: DoubleDouble,
+    second_turn: DoubleDouble,
+    period: DoubleDouble,
 }
 
 impl Orbit {
     /// The orbit between two turning points, the first one before the second.
     #[must_use]
-    pub fn between(first_turn: Double, second_turn: Double) -> Orbit {
+    pub fn between(first_turn: DoubleDouble, second_turn: DoubleDouble) -> Orbit {
         Orbit {
             first_turn,
             second_turn,
@@ -31,24 +31,24 @@ impl Orbit {
     }
 
     /// Whether `time` lies between the turning points, to rounding.
-    pub fn holds(&self, time: Double) -> bool {
+    pub fn holds(&self, time: DoubleDouble) -> bool {
         let rounding = VALIDATION_TOLERANCE * self.period.high;
         time.since(self.first_turn) >= -rounding && self.second_turn.since(time) >= -rounding
     }
 
     /// Both turning points, the earlier one first.
     #[must_use]
-    pub fn turns(&self) -> [Double; 2] {
+    pub fn turns(&self) -> [DoubleDouble; 2] {
         [self.first_turn, self.second_turn]
     }
 
     /// The turning points that are met within the time `step`.
     pub fn turns_within(
         &self,
-        now: Double,
+        now: DoubleDouble,
         direction: f64,
         step: f64,
-    ) -> impl Iterator<Item = Double> {
+    ) -> impl Iterator<Item = DoubleDouble> {
         let mut turns = self.turns();
         if direction > 0.0 {
             turns.reverse();
@@ -64,13 +64,13 @@ impl Orbit {
 
     /// The later turning point.
     #[must_use]
-    pub fn second_turn(&self) -> Double {
+    pub fn second_turn(&self) -> DoubleDouble {
         self.second_turn
     }
 
     /// The time from `now` to the next turning point.
     #[must_use]
-    pub fn time_to_turn(&self, now: Double, direction: f64) -> f64 {
+    pub fn time_to_turn(&self, now: DoubleDouble, direction: f64) -> f64 {
         if direction > 0.0 {
             self.second_turn.since(now)
         } else {
@@ -80,9 +80,9 @@ impl Orbit {
 
     /// What is left of a time after whole periods, 0 to a period.
     #[inline]
-    fn remainder(&self, time: f64) -> Double {
+    fn remainder(&self, time: f64) -> DoubleDouble {
         if time < self.period.high {
-            return Double::new(time);
+            return DoubleDouble::new(time);
         }
         let mut rest = self.less_whole_periods(time);
         // The low part of the period enters once for each whole period: of the longest times that is
@@ -98,16 +98,16 @@ impl Orbit {
 
     /// A time less as many periods as it seems to hold by the high part of the period.
     #[inline]
-    fn less_whole_periods(&self, time: f64) -> Double {
+    fn less_whole_periods(&self, time: f64) -> DoubleDouble {
         let whole = (time / self.period.high).trunc();
         // The remainder of two f64 is exact.
-        Double::new(time % self.period.high).plus(-(whole * self.period.low))
+        DoubleDouble::new(time % self.period.high).plus(-(whole * self.period.low))
     }
 
     /// Where between the turning points, and in which direction, the motion is
     /// after the time `step`.
     #[must_use]
-    pub fn run(&self, now: Double, mut direction: f64, step: f64) -> (Double, f64) {
+    pub fn run(&self, now: DoubleDouble, mut direction: f64, step: f64) -> (DoubleDouble, f64) {
         let rest = self.remainder(step);
         let mut now = now.add(rest.scale(direction));
         // Two reflections come back to the first direction; a third and fourth
@@ -134,8 +134,8 @@ mod tests {
     /// Turning points 1 and 4: period 6.
     #[test]
     fn time_is_folded_between_the_turning_points() {
-        let orbit = Orbit::between(Double::new(1.0), Double::new(4.0));
-        let from = Double::new(3.0);
+        let orbit = Orbit::between(DoubleDouble::new(1.0), DoubleDouble::new(4.0));
+        let from = DoubleDouble::new(3.0);
         for (step, place, direction) in [
             (0.5, 3.5, 1.0),
             (2.0, 3.0, -1.0),
@@ -151,9 +151,11 @@ mod tests {
     /// Of a period that is no `f64`, the longest steps hold more periods than there are digits.
     #[test]
     fn no_step_leaves_the_orbit() {
-        let second_turn = Double::new(1.0).div(Double::new(3.0)).add(Double::new(1.0));
-        let orbit = Orbit::between(Double::new(1.0), second_turn);
-        let from = Double::new(1.1);
+        let second_turn = DoubleDouble::new(1.0)
+            .div(DoubleDouble::new(3.0))
+            .add(DoubleDouble::new(1.0));
+        let orbit = Orbit::between(DoubleDouble::new(1.0), second_turn);
+        let from = DoubleDouble::new(1.1);
         for exponent in 0..=50 {
             for part in [1.0, 3.7, 9.1] {
                 let step = part * 10_f64.powi(exponent);

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::double::Double;
+use super::double_double::DoubleDouble;
 
 /// Where positions are counted from.
 pub trait PositionOrigin: Copy + Debug + PartialEq + Serialize + DeserializeOwned {
@@ -42,8 +42,8 @@ impl PositionOrigin for () {
 }
 
 /// A number that no step changes much.
-impl PositionOrigin for Double {
-    const ZERO: Double = Double::ZERO;
+impl PositionOrigin for DoubleDouble {
+    const ZERO: DoubleDouble = DoubleDouble::ZERO;
 
     fn absolute(self, position: f64) -> f64 {
         self.plus(position).value()
@@ -54,6 +54,6 @@ impl PositionOrigin for Double {
     }
 
     fn is_finite(&self) -> bool {
-        Double::is_finite(self)
+        DoubleDouble::is_finite(self)
     }
 }

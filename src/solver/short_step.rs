@@ -11,7 +11,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::collocation::product;
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 use super::number::Number;
 use super::step_control::{StepControl, UNSEEN};
@@ -33,7 +33,7 @@ const NEXT_DEGREE: f64 = 1.25 * 0.011_610;
 #[derive(Clone, Copy, Debug)]
 pub struct ShortStep<'a> {
     /// Time of the model at its begin.
-    pub time: &'a Double,
+    pub time: &'a DoubleDouble,
     /// How long it is.
     pub length: f64,
     /// Positions between which it may go.
@@ -61,7 +61,7 @@ impl Trend {
     #[inline(never)]
     pub fn first<E: Equation>(
         equation: &E,
-        time: &Double,
+        time: &DoubleDouble,
         state: State,
         length: f64,
     ) -> Option<Trend> {
@@ -320,7 +320,7 @@ mod tests {
     impl Equation for Pushed {
         type Local<'a> = Pushed;
 
-        fn at(&self, _time: &Double) -> Pushed {
+        fn at(&self, _time: &DoubleDouble) -> Pushed {
             *self
         }
 
@@ -398,7 +398,7 @@ mod tests {
             };
             let exact = Trajectory::new(state, limits, 1e-14);
             let mut exact = exact.without_endpoint_steps();
-            let followed = exact.advance(&equation, &mut Double::new(0.0), length);
+            let followed = exact.advance(&equation, &mut DoubleDouble::new(0.0), length);
             followed.expect("it can be followed");
             let position = solved.end.position - exact.position();
             let rate = (solved.end.rate - exact.rate()) * time_scale;

@@ -17,13 +17,13 @@
 //! Equations I", 2nd ed., section II.7. Accuracy: each entry is computed in
 //! double-length arithmetic and rounded once.
 
-use super::double::Double;
+use super::double_double::DoubleDouble;
 
 /// Nodes of the largest method.
 pub(super) const MOST_NODES: usize = 16;
 
 /// Legendre polynomials at one point: degrees 0 to the number of nodes + 1.
-pub(super) type Legendre = [Double; MOST_NODES + 2];
+pub(super) type Legendre = [DoubleDouble; MOST_NODES + 2];
 
 /// A matrix by columns: column j multiplies the value at node pair j.
 pub type Columns<const P: usize> = [[f64; P]; P];
@@ -146,8 +146,8 @@ impl<const P: usize> Tables<P> {
             powers_from_even: [[0.0; P]; P],
             powers_from_odd: [[0.0; P]; P],
         };
-        let mut node = [Double::ZERO; P];
-        let mut at_node = [[Double::ZERO; MOST_NODES + 2]; P];
+        let mut node = [DoubleDouble::ZERO; P];
+        let mut at_node = [[DoubleDouble::ZERO; MOST_NODES + 2]; P];
         let mut i = 0;
         while i < P {
             node[i] = gauss_node(i, Self::NODES);
@@ -160,14 +160,14 @@ impl<const P: usize> Tables<P> {
         while j < P {
             // Row of a_k over sums or differences: (2k+1)/2 · w_j · P_k(u_j).
             let weight = gauss_weight(node[j], &at_node[j], Self::NODES);
-            let mut share = [Double::ZERO; MOST_NODES];
+            let mut share = [DoubleDouble::ZERO; MOST_NODES];
             let mut k = 0;
             while k < Self::NODES {
                 share[k] = weight.mul(at_node[j][k]).scale(0.5 * (2 * k + 1) as f64);
                 k += 1;
             }
             tables.mean[j] = share[0].value();
-            tables.tilt[j] = share[1].div(Double::new(3.0)).value();
+            tables.tilt[j] = share[1].div(DoubleDouble::new(3.0)).value();
             let mut i = 0;
             while i < P {
                 let p = &at_node[i];
@@ -188,29 +188,35 @@ impl<const P: usize> Tables<P> {
 }
 
 /// The integral of P_k from −1, without the constant of k = 0.
-pub(super) const fn once(p: &Legendre, k: usize) -> Double {
+pub(super) const fn once(p: &Legendre, k: usize) -> DoubleDouble {
     if k == 0 {
         return p[1];
     }
-    p[k + 1].sub(p[k - 1]).div(Double::new((2 * k + 1) as f64))
+    p[k + 1]
+        .sub(p[k - 1])
+        .div(DoubleDouble::new((2 * k + 1) as f64))
 }
 
 /// The twice repeated integral of P_k from −1, without the terms that the
 /// caller adds by itself: u for k = 0 and the constant −1/3 for k = 1.
-pub(super) const fn twice(p: &Legendre, k: usize) -> Double {
+pub(super) const fn twice(p: &Legendre, k: usize) -> DoubleDouble {
     match k {
         // (u² + 1)/2, from (u + 1)²/2.
-        0 => p[1].mul(p[1]).add(Double::ONE).scale(0.5),
+        0 => p[1].mul(p[1]).add(DoubleDouble::ONE).scale(0.5),
         // (∫P_2 − u)/3, from (∫P_2 − ∫P_0)/3.
-        1 => once(p, 2).sub(p[1]).div(Double::new(3.0)),
+        1 => once(p, 2).sub(p[1]).div(DoubleDouble::new(3.0)),
         _ => once(p, k + 1)
             .sub(once(p, k - 1))
-            .div(Double::new((2 * k + 1) as f64)),
+            .div(DoubleDouble::new((2 * k + 1) as f64)),
     }
 }
 
-pub(super) const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
-    let mut sum = Double::ZERO;
+pub(super) const fn sum_once(
+    share: &[DoubleDouble; MOST_NODES],
+    p: &Legendre,
+    parity: usize,
+) -> DoubleDouble {
+    let mut sum = DoubleDouble::ZERO;
     let mut k = parity;
     while k < MOST_NODES {
         sum = sum.add(share[k].mul(once(p, k)));
@@ -219,8 +225,12 @@ pub(super) const fn sum_once(share: &[Double; MOST_NODES], p: &Legendre, parity:
     sum
 }
 
-pub(super) const fn sum_twice(share: &[Double; MOST_NODES], p: &Legendre, parity: usize) -> Double {
-    let mut sum = Double::ZERO;
+pub(super) const fn sum_twice(
+    share: &[DoubleDouble; MOST_NODES],
+    p: &Legendre,
+    parity: usize,
+) -> DoubleDouble {
+    let mut sum = DoubleDouble::ZERO;
     let mut k = parity;
     while k < MOST_NODES {
         sum = sum.add(share[k].mul(twice(p, k)));
@@ -230,15 +240,15 @@ pub(super) const fn sum_twice(share: &[Double; MOST_NODES], p: &Legendre, parity
 }
 
 /// The factor of uᵖ⁺² in the twice integrated `coefficient`·uᵖ.
-const fn integrated(coefficient: Double, p: usize) -> f64 {
+const fn integrated(coefficient: DoubleDouble, p: usize) -> f64 {
     coefficient
-        .div(Double::new(((p + 1) * (p + 2)) as f64))
+        .div(DoubleDouble::new(((p + 1) * (p + 2)) as f64))
         .value()
 }
 
 /// P_0 to P_n+1 at `u`, by Bonnet's recursion.
-pub(super) const fn legendre(u: Double) -> Legendre {
-    let mut p = [Double::ONE; MOST_NODES + 2];
+pub(super) const fn legendre(u: DoubleDouble) -> Legendre {
+    let mut p = [DoubleDouble::ONE; MOST_NODES + 2];
     p[1] = u;
     let mut k = 1;
     while k < MOST_NODES + 1 {
@@ -246,23 +256,27 @@ pub(super) const fn legendre(u: Double) -> Legendre {
             .mul(p[k])
             .scale((2 * k + 1) as f64)
             .sub(p[k - 1].scale(k as f64))
-            .div(Double::new((k + 1) as f64));
+            .div(DoubleDouble::new((k + 1) as f64));
         k += 1;
     }
     p
 }
 
 /// `[k][m]`: the coefficient of u^m in P_k.
-const fn legendre_powers() -> [[Double; MOST_NODES]; MOST_NODES] {
-    let mut c = [[Double::ZERO; MOST_NODES]; MOST_NODES];
-    c[0][0] = Double::ONE;
-    c[1][1] = Double::ONE;
+const fn legendre_powers() -> [[DoubleDouble; MOST_NODES]; MOST_NODES] {
+    let mut c = [[DoubleDouble::ZERO; MOST_NODES]; MOST_NODES];
+    c[0][0] = DoubleDouble::ONE;
+    c[1][1] = DoubleDouble::ONE;
     let mut k = 1;
     while k + 1 < MOST_NODES {
-        let divisor = Double::new((k + 1) as f64);
+        let divisor = DoubleDouble::new((k + 1) as f64);
         let mut m = 0;
         while m <= k + 1 {
-            let lifted = if m == 0 { Double::ZERO } else { c[k][m - 1] };
+            let lifted = if m == 0 {
+                DoubleDouble::ZERO
+            } else {
+                c[k][m - 1]
+            };
             c[k + 1][m] = lifted
                 .scale((2 * k + 1) as f64)
                 .sub(c[k - 1][m].scale(k as f64))
@@ -275,15 +289,15 @@ const fn legendre_powers() -> [[Double; MOST_NODES]; MOST_NODES] {
 }
 
 /// The derivative of P_n at `u`.
-pub(super) const fn legendre_slope(u: Double, p: &Legendre, n: usize) -> Double {
+pub(super) const fn legendre_slope(u: DoubleDouble, p: &Legendre, n: usize) -> DoubleDouble {
     p[n - 1]
         .sub(u.mul(p[n]))
         .scale(n as f64)
-        .div(Double::ONE.sub(u.mul(u)))
+        .div(DoubleDouble::ONE.sub(u.mul(u)))
 }
 
 /// The i-th positive zero of P_n, by Newton's method from Tricomi's estimate.
-pub(super) const fn gauss_node(i: usize, n: usize) -> Double {
+pub(super) const fn gauss_node(i: usize, n: usize) -> DoubleDouble {
     // cos(π(4k−1)/(4n+2)) for the k-th largest zero, by its power series.
     let k = n / 2 - i;
     let angle = std::f64::consts::PI * (4 * k - 1) as f64 / (4 * n + 2) as f64;
@@ -293,7 +307,7 @@ pub(super) const fn gauss_node(i: usize, n: usize) -> Double {
         term *= -angle * angle / ((2 * m - 1) * (2 * m)) as f64;
         cosine += term;
     }
-    let mut u = Double::new(cosine);
+    let mut u = DoubleDouble::new(cosine);
     let mut round = 0;
     while round < 6 {
         let p = legendre(u);
@@ -304,9 +318,9 @@ pub(super) const fn gauss_node(i: usize, n: usize) -> Double {
 }
 
 /// The weight of a node: 2 / ((1 − u²) P'_n(u)²).
-pub(super) const fn gauss_weight(u: Double, p: &Legendre, n: usize) -> Double {
+pub(super) const fn gauss_weight(u: DoubleDouble, p: &Legendre, n: usize) -> DoubleDouble {
     let slope = legendre_slope(u, p, n);
-    Double::new(2.0).div(Double::ONE.sub(u.mul(u)).mul(slope.mul(slope)))
+    DoubleDouble::new(2.0).div(DoubleDouble::ONE.sub(u.mul(u)).mul(slope.mul(slope)))
 }
 
 #[cfg(test)]

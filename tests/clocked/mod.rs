@@ -5,7 +5,7 @@ use std::ops::{Deref, DerefMut};
 use dielectric_elastomer_actuator::solver::Equation;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{self, CoupledEquation};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::integrator::{Integrator, Method};
 use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Steps};
 
@@ -13,13 +13,13 @@ use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Steps
 #[derive(Clone)]
 pub struct Clocked<M: Method> {
     motion: Integrator<M>,
-    pub clock: Double,
+    pub clock: DoubleDouble,
 }
 
 /// From time 0 on.
 impl<M: Method> From<Integrator<M>> for Clocked<M> {
     fn from(motion: Integrator<M>) -> Clocked<M> {
-        Clocked::at(Double::ZERO, motion)
+        Clocked::at(DoubleDouble::ZERO, motion)
     }
 }
 
@@ -29,7 +29,7 @@ impl<M: Method> From<Integrator<M>> for Clocked<M> {
 )]
 impl<M: Method> Clocked<M> {
     /// A motion that has come to this time.
-    pub fn at(clock: Double, motion: Integrator<M>) -> Clocked<M> {
+    pub fn at(clock: DoubleDouble, motion: Integrator<M>) -> Clocked<M> {
         Clocked { motion, clock }
     }
 

@@ -11,7 +11,7 @@ use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, MOST_STATES, Progress, Stage,
 };
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use proptest::prelude::*;
 
 fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
@@ -129,7 +129,7 @@ proptest! {
             let mut voltage = Polynomial::constant(unit * source);
             voltage.set_derivative(1, unit * slope / period);
             set(&mut motion, &mut trajectory, Drive {
-                since: Double::ZERO,
+                since: DoubleDouble::ZERO,
                 lead: 0.0,
                 voltage,
                 prestress: Polynomial::constant(prestress),

@@ -1,7 +1,7 @@
 //! Exact periods and turning points of undamped scenes under constant inputs.
 
 use crate::scene::{Scene, follow, number, read, start};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 
 /// After whole periods the actuator stands at λ = 1 again, after half a period at the turn.
 #[test]
@@ -16,7 +16,7 @@ fn periods_and_turning_points_are_exact() {
         follow(
             &mut trajectory,
             &motion,
-            Double::new(0.5 * period),
+            DoubleDouble::new(0.5 * period),
             f64::INFINITY,
         );
         let error = trajectory.position() - turn;
@@ -24,7 +24,7 @@ fn periods_and_turning_points_are_exact() {
         follow(
             &mut trajectory,
             &motion,
-            Double::new(1e3 * period),
+            DoubleDouble::new(1e3 * period),
             period * 0.377,
         );
         let error = trajectory.position() - 1.0;

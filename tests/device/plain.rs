@@ -6,7 +6,7 @@ use dielectric_elastomer_actuator::actuator::device::{Device, DeviceMotion, Spri
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 
 const SHEET: Parameters = Parameters {
@@ -60,7 +60,7 @@ fn both_integrators_follow_the_same_motion() {
     let mut reference = Clocked::from(Trajectory::new(rest, LIMITS, 1e-13));
     for k in 1..=200 {
         let time = f64::from(k) * 3.7;
-        follow(&mut ours, &coupled, Double::new(time), f64::INFINITY);
+        follow(&mut ours, &coupled, DoubleDouble::new(time), f64::INFINITY);
         let step = time - reference.clock.value();
         reference.advance(&plain, step).expect("a motion");
         let error = ours.position() - reference.position();

@@ -10,7 +10,7 @@ use dielectric_elastomer_actuator::actuator::device::{
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
 use dielectric_elastomer_actuator::pull_in::device::{dynamic, quasi_static};
 use dielectric_elastomer_actuator::solver::coupled::{CoupledEquation, Stage, Trajectory};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 
 fn sheet(aspect: f64) -> Device {
     Device::plain(Parameters {
@@ -42,7 +42,7 @@ fn equilibrium(mut device: Device, source: f64, prestress: f64) -> f64 {
     follow(
         &mut trajectory,
         &motion,
-        Double::new(1000.0 * period),
+        DoubleDouble::new(1000.0 * period),
         f64::INFINITY,
     );
     trajectory.position()
@@ -98,7 +98,7 @@ fn gent_equilibrium_and_frequency_of_sheng() {
     let found = equilibrium(light, voltage, 0.5);
     close(found, 1.149_228_951_976_537, 1e-11);
     let motion = motion(device, voltage, 0.5);
-    let local = motion.at(&Double::ZERO, &Double::ZERO);
+    let local = motion.at(&DoubleDouble::ZERO, &DoubleDouble::ZERO);
     let load = Load {
         source: voltage,
         prestress: 0.5,
@@ -119,7 +119,7 @@ fn appendix_a_in_si_units() {
     let motion = motion(device.nondimensional(), 0.5, 0.0);
     let mut trajectory = start(&motion, 0.0, 1e-12).with(Trajectory::recording_extremes);
     // 16.7211477513329 units of time.
-    let period = scales.time(Double::new(1.291_025_498_695_744_5e-3));
+    let period = scales.time(DoubleDouble::new(1.291_025_498_695_744_5e-3));
     follow(&mut trajectory, &motion, period, f64::INFINITY);
     close(trajectory.position(), 1.0, 1e-11);
     let highest = trajectory.extremes().expect("recorded").highest;
@@ -136,7 +136,7 @@ fn yeoh_prestress_of_elastosil() {
         third: 6.6 / 180.7,
     };
     let motion = motion(device.nondimensional(), 0.0, 0.0);
-    let local = motion.at(&Double::ZERO, &Double::ZERO);
+    let local = motion.at(&DoubleDouble::ZERO, &DoubleDouble::ZERO);
     for (stretch, stress) in [(1.15, 261_846.480_913_707), (1.38, 546_469.550_958_688)] {
         let load = Load {
             source: 0.0,
@@ -156,7 +156,12 @@ fn a_blocked_membrane_is_charged_exponentially() {
     let motion = motion(device, 0.4, 0.0);
     let mut trajectory = start(&motion, 0.0, 1e-12);
     for time in [0.1, 1.0, 2.7, 10.0, 60.0] {
-        follow(&mut trajectory, &motion, Double::new(time), f64::INFINITY);
+        follow(
+            &mut trajectory,
+            &motion,
+            DoubleDouble::new(time),
+            f64::INFINITY,
+        );
         let exact = -0.4 * (-time / 3.0_f64).exp_m1();
         close(Present::of(&motion, &trajectory).charge, exact, 1e-10);
     }
@@ -179,7 +184,12 @@ fn a_small_step_creeps_as_the_standard_linear_solid() {
     let mut trajectory = start(&motion, 0.0, 1e-13);
     for part in [0.1, 0.5, 1.0, 3.0, 10.0] {
         let time = part * relaxation_time;
-        follow(&mut trajectory, &motion, Double::new(time), f64::INFINITY);
+        follow(
+            &mut trajectory,
+            &motion,
+            DoubleDouble::new(time),
+            f64::INFINITY,
+        );
         let left = modulus / (1.0 + modulus) * (-time / ((1.0 + modulus) * relaxation_time)).exp();
         let exact = voltage * voltage / 6.0 * (1.0 - left);
         // The dashpot's 6η delays by some 10 units of time.
@@ -200,7 +210,7 @@ fn small_oscillations() {
         prestress: 0.0,
     };
     let voltage = motion(device, 0.3, 0.0);
-    let local = voltage.at(&Double::ZERO, &Double::ZERO);
+    let local = voltage.at(&DoubleDouble::ZERO, &DoubleDouble::ZERO);
     close(
         local.small_signal_frequency(&none, &stage(1.0)),
         (6.0_f64 / 102.0).sqrt(),
@@ -217,7 +227,7 @@ fn small_oscillations() {
         source: charge,
         prestress: 0.0,
     };
-    let local = by_charge.at(&Double::ZERO, &Double::ZERO);
+    let local = by_charge.at(&DoubleDouble::ZERO, &DoubleDouble::ZERO);
     let held_charge = local.small_signal_frequency(&load, &stage(1.1));
     let inertia = 100.0 + 2.0 * 1.1_f64.powi(-6);
     let stiffer = inertia * (held_charge.powi(2) - held_voltage.powi(2));

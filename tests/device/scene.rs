@@ -10,7 +10,7 @@ use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, FullState, LocalCoupledEquation, Progress, Stage, Trajectory,
 };
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use serde_json::Value;
 
@@ -210,7 +210,12 @@ impl Present {
 }
 
 /// Follows the motion up to a time in steps no longer than `step`.
-pub fn follow(trajectory: &mut Clocked<Carried>, motion: &DeviceMotion, target: Double, step: f64) {
+pub fn follow(
+    trajectory: &mut Clocked<Carried>,
+    motion: &DeviceMotion,
+    target: DoubleDouble,
+    step: f64,
+) {
     loop {
         let rest = target.since(trajectory.clock);
         if rest <= 0.0 {

@@ -1,7 +1,7 @@
 //! Each reference scene, at times that are no ends of our steps.
 
 use crate::scene::{Present, Scene, follow, number, read, start};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 
 /// The largest errors of a scene: of the stretch, of the rate (in units of its largest value),
 /// of the charge, of the current, of voltage, field and capacitance, of the dashpots, of each energy in
@@ -47,7 +47,7 @@ fn errors(name: &str, tolerance: f64, step: f64, records_energy: bool) -> Errors
         *place = if error <= *place { *place } else { error };
     };
     for row in rows {
-        let time = scales.time(Double::new(number(&row["t_s"])));
+        let time = scales.time(DoubleDouble::new(number(&row["t_s"])));
         follow(&mut trajectory, &motion, time, step);
         let get = |key: &str| number(&row[key]);
         let present = Present::of(&motion, &trajectory);

@@ -1,7 +1,7 @@
 //! The periodic state of a damped actuator under an alternating voltage.
 
 use crate::scene::{Scene, follow, number, read, start};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use std::f64::consts::TAU;
 
 /// Samples of one period of the voltage.
@@ -26,7 +26,7 @@ fn the_steady_state_has_the_exact_amplitude_and_phase() {
         follow(
             &mut trajectory,
             &motion,
-            Double::new(whole * period),
+            DoubleDouble::new(whole * period),
             period,
         );
         trajectory.record_extremes_anew(true);
@@ -36,7 +36,7 @@ fn the_steady_state_has_the_exact_amplitude_and_phase() {
             follow(
                 &mut trajectory,
                 &motion,
-                Double::new((whole + part) * period),
+                DoubleDouble::new((whole + part) * period),
                 f64::INFINITY,
             );
             let (stretch, angle) = (trajectory.position(), 2.0 * TAU * part);

@@ -12,7 +12,7 @@ use dielectric_elastomer_actuator::pull_in::device::{
 };
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::coupled::{FullState, Progress, Trajectory};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use serde_json::Value;
 
@@ -358,7 +358,7 @@ fn a_step_just_above_the_threshold_from_rest_pulls_in() {
                 lower: 0.1,
                 upper: 4.0,
             };
-            let mut clock = Double::ZERO;
+            let mut clock = DoubleDouble::ZERO;
             let mut trajectory = Trajectory::new(rest, limits, 1e-13);
             let outcome = trajectory.advance(&motion, &mut clock, 300.0 * period);
             let passed = matches!(outcome, Ok(Progress::Stopped { .. }));

@@ -5,7 +5,7 @@ use crate::scene::{LIMITS, Scene, follow, number, read, start, start_between};
 use dielectric_elastomer_actuator::actuator::device::{Breakdown, DeviceMotion};
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{Event, Progress, Trajectory};
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 
 const SCENES: [&str; 6] = [
@@ -65,7 +65,12 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
         let scene = Scene::of(&read(name));
         let motion = scene.motion(true);
         let mut trajectory = start(&motion, scene.charge, 1e-9);
-        follow(&mut trajectory, &motion, Double::new(33.3), f64::INFINITY);
+        follow(
+            &mut trajectory,
+            &motion,
+            DoubleDouble::new(33.3),
+            f64::INFINITY,
+        );
         let bytes = postcard::to_allocvec(&*trajectory).expect("bytes");
         for place in (0..bytes.len()).step_by(3) {
             for change in [0x01, 0x80, 0xff] {
@@ -75,7 +80,7 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
                     continue;
                 };
                 if restored.is_valid() {
-                    let _ = restored.advance(&motion, &mut Double::new(33.3), 1.0);
+                    let _ = restored.advance(&motion, &mut DoubleDouble::new(33.3), 1.0);
                     assert!(restored.position().is_finite(), "{name}, byte {place}");
                 }
             }
@@ -98,9 +103,12 @@ fn restarts_at_every_step_keep_the_tolerance() {
         let (scales, motion) = (scene.scales(), scene.motion(false));
         let mut trajectory = start(&motion, scene.charge, 1e-10);
         let rows = file["rows"].as_array().expect("rows");
-        let step = 0.01 * scales.time(Double::new(number(&rows[15]["t_s"]))).value();
+        let step = 0.01
+            * scales
+                .time(DoubleDouble::new(number(&rows[15]["t_s"])))
+                .value();
         for row in &rows[..16] {
-            let target = scales.time(Double::new(number(&row["t_s"])));
+            let target = scales.time(DoubleDouble::new(number(&row["t_s"])));
             loop {
                 trajectory.restart();
                 let rest = target.since(trajectory.clock);
@@ -164,7 +172,7 @@ fn a_short_breakdown_is_located() {
         follow(
             &mut trajectory,
             &motion,
-            Double::new(f64::from(k) * 0.05),
+            DoubleDouble::new(f64::from(k) * 0.05),
             f64::INFINITY,
         );
         let here = field(&motion, &trajectory);

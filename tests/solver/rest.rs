@@ -1,6 +1,6 @@
 //! Motions at rest, next to it, and damped.
 
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::number::Number;
 use dielectric_elastomer_actuator::solver::{LocalEquation, Sensitivity};
 
@@ -45,7 +45,7 @@ struct Damped;
 impl Equation for Damped {
     type Local<'a> = Damped;
 
-    fn at(&self, _time: &Double) -> Damped {
+    fn at(&self, _time: &DoubleDouble) -> Damped {
         Damped
     }
 

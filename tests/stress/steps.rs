@@ -1,6 +1,6 @@
 //! Communication steps of all sizes and numbers, late times, time reversal.
 
-use dielectric_elastomer_actuator::solver::double::Double;
+use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 
 use super::*;
 
@@ -162,7 +162,7 @@ fn at_a_time_of_1e9_steps_of_1e_3_go_as_they_do_at_0() {
         let (late, mut early) = (alternating(0.3, 0.125), alternating(0.3, 0.125));
         early.harmonic[2] = sine.atan2(cosine);
         let [late_motion, early_motion] = [late, early].map(|load| motion(&actuator, &load));
-        let mut late = Clocked::at(Double::new(1e9), Trajectory::new(REST, WIDE, 1e-12));
+        let mut late = Clocked::at(DoubleDouble::new(1e9), Trajectory::new(REST, WIDE, 1e-12));
         let mut early = from_rest(1e-12);
         let mut worst = 0.0_f64;
         for _ in 0..count {

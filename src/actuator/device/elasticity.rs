@@ -12,7 +12,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::number::{Number, Parameter, ParameterOf};
 
@@ -36,8 +36,8 @@ pub enum Elasticity<P = f64> {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Locking<P = f64> {
     limit: P,
-    largest: Double,
-    smallest: Double,
+    largest: DoubleDouble,
+    smallest: DoubleDouble,
     /// Both as parameters.
     ends: [P; 2],
     third: P,
@@ -67,7 +67,7 @@ impl Locking {
 }
 
 impl<P: Parameter> Locking<P> {
-    fn of(limit: P, parameter: impl Fn(Double) -> P) -> Locking<P> {
+    fn of(limit: P, parameter: impl Fn(DoubleDouble) -> P) -> Locking<P> {
         let j = limit.value();
         let a = 0.5 * (j + 3.0);
         // cos θ = 1 − 27/(4a³), without the loss where θ is small.
@@ -93,7 +93,7 @@ impl<P: Parameter> Locking<P> {
 
     /// Both locking stretches, counted from an origin.
     #[must_use]
-    pub fn walls(&self, origin: Double) -> [P; 2] {
+    pub fn walls(&self, origin: DoubleDouble) -> [P; 2] {
         let [largest, smallest] = self.ends;
         [
             largest.with_value(self.largest.sub(origin).value()),
@@ -109,13 +109,13 @@ impl<P: Parameter> Locking<P> {
 
     /// The stretch at which it locks.
     #[must_use]
-    pub fn largest(&self) -> Double {
+    pub fn largest(&self) -> DoubleDouble {
         self.largest
     }
 
     /// The stretch at which it locks in contraction.
     #[must_use]
-    pub fn smallest(&self) -> Double {
+    pub fn smallest(&self) -> DoubleDouble {
         self.smallest
     }
 
@@ -136,15 +136,15 @@ impl<P: Parameter> Locking<P> {
 }
 
 /// The root near `x` of 2x³ − (J+3)x² + 1 in double length.
-fn refined(limit: f64, x: f64) -> Double {
-    let mut x = Double::new(x);
+fn refined(limit: f64, x: f64) -> DoubleDouble {
+    let mut x = DoubleDouble::new(x);
     for _ in 0..6 {
         let square = x.mul(x);
-        let a = Double::new(limit).plus(3.0);
-        let value = x.scale(2.0).sub(a).mul(square).add(Double::ONE);
+        let a = DoubleDouble::new(limit).plus(3.0);
+        let value = x.scale(2.0).sub(a).mul(square).add(DoubleDouble::ONE);
         let slope = x.value() * (6.0 * x.value() - 2.0 * a.value());
         if slope != 0.0 {
-            x = x.sub(value.div(Double::new(slope)));
+            x = x.sub(value.div(DoubleDouble::new(slope)));
         }
     }
     x
@@ -176,8 +176,8 @@ mod tests {
             );
             // The low parts make the gap vanish to thirty digits.
             let x = found.mul(found);
-            let a = Double::new(113.0);
-            let rest = x.scale(2.0).sub(a).mul(x).mul(x).add(Double::ONE);
+            let a = DoubleDouble::new(113.0);
+            let rest = x.scale(2.0).sub(a).mul(x).mul(x).add(DoubleDouble::ONE);
             assert!(rest.value().abs() < 1e-25, "{rest:?}");
         }
     }

@@ -18,7 +18,7 @@ use super::parameters::{Branch, Damping, Device, Permittivity, Source};
 use crate::actuator::Drive;
 use crate::actuator::drive::LocalDrive;
 use crate::solver::coupled::{MOST_STATES, Slope, Stage};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::number::{Number, Parameter, ParameterOf};
 
@@ -113,7 +113,12 @@ impl<P: Parameter> Permittivity<P> {
 impl<'a, P: Parameter> LocalDevice<'a, P> {
     /// The device under a drive, seen from a time and an origin of the stretch.
     #[must_use]
-    pub fn new(device: &'a Device<P>, drive: &'a Drive, time: &Double, origin: &Double) -> Self {
+    pub fn new(
+        device: &'a Device<P>,
+        drive: &'a Drive,
+        time: &DoubleDouble,
+        origin: &DoubleDouble,
+    ) -> Self {
         let folded = device.folded();
         let walls = match &device.elasticity {
             Elasticity::Gent(locking) => locking.walls(*origin),

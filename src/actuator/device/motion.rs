@@ -9,7 +9,7 @@ use crate::actuator::{Drive, Motion};
 use crate::solver::coupled::{
     CoupledEquation, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage,
 };
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::number::Number;
 
 /// Nearer to a locking stretch than this part of it, the stretch is counted from there.
@@ -55,7 +55,7 @@ impl DeviceMotion {
 impl CoupledEquation for DeviceMotion {
     type Local<'a> = LocalDevice<'a>;
 
-    fn at(&self, time: &Double, origin: &Double) -> LocalDevice<'_> {
+    fn at(&self, time: &DoubleDouble, origin: &DoubleDouble) -> LocalDevice<'_> {
         LocalDevice::new(&self.device, &self.drive, time, origin)
     }
 
@@ -83,11 +83,11 @@ impl CoupledEquation for DeviceMotion {
         self.device.breakdown.is_some()
     }
 
-    fn origin_near(&self, position: f64, present: Double) -> Double {
+    fn origin_near(&self, position: f64, present: DoubleDouble) -> DoubleDouble {
         let Elasticity::Gent(locking) = &self.device.elasticity else {
-            return Double::ZERO;
+            return DoubleDouble::ZERO;
         };
-        let distance = |wall: Double| present.sub(wall).plus(position).value().abs();
+        let distance = |wall: DoubleDouble| present.sub(wall).plus(position).value().abs();
         let [above, below] = [locking.largest(), locking.smallest()];
         let wall = if distance(above) < distance(below) {
             above
@@ -102,7 +102,7 @@ impl CoupledEquation for DeviceMotion {
         if distance(wall) < part * wall.high {
             wall
         } else {
-            Double::ZERO
+            DoubleDouble::ZERO
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::model::Direction;
 use crate::nondimensional::Nondimensional;
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::limits::Limit;
 use crate::solver::number::Number;
@@ -76,7 +76,7 @@ impl Sample<Dual> {
     /// A scene in this state, `held` at a limit or not, as it changes in a direction.
     pub(crate) fn along(
         scene: &Scene,
-        time: Double,
+        time: DoubleDouble,
         state: State,
         held: Option<Limit>,
         direction: &Direction<Nondimensional>,
@@ -116,7 +116,7 @@ impl Sample<TimeSeries> {
     /// power series in the time, right up to the derivatives of `order`.
     pub(crate) fn from_now_on(
         scene: &Scene,
-        time: Double,
+        time: DoubleDouble,
         state: State,
         held: Option<Limit>,
         order: usize,

@@ -25,7 +25,7 @@ use crate::solver::coupled::{
     CoupledEquation, Event, Failure, FullState, MOST_INTEGRALS, MOST_STATES, Progress, Stage,
     Trajectory,
 };
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::jet::Dual;
 use crate::solver::limits::{Limit, Limits};
 use crate::solver::number::Parameter;
@@ -241,7 +241,7 @@ fn excess_of(
         upper: if charges { LIMITS.upper } else { saddle },
         ..LIMITS
     };
-    let mut clock = Double::ZERO;
+    let mut clock = DoubleDouble::ZERO;
     trajectory.begin_anew(REST, limits, TOLERANCE);
     trajectory.record_extremes_anew(!charges);
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();

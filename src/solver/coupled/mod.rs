@@ -27,7 +27,7 @@ pub use trajectory::{Event, Failure, Progress, Trajectory};
 use serde::{Deserialize, Serialize};
 
 use super::State;
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::number::Number;
 
 /// First-order states that a system may have.
@@ -91,7 +91,7 @@ pub trait CoupledEquation {
         Self: 'a;
 
     /// The system with the origin of time moved to `time`, that of the position to `origin`.
-    fn at(&self, time: &Double, origin: &Double) -> Self::Local<'_>;
+    fn at(&self, time: &DoubleDouble, origin: &DoubleDouble) -> Self::Local<'_>;
 
     /// The number of first-order states.
     fn states(&self) -> usize;
@@ -115,7 +115,7 @@ pub trait CoupledEquation {
 
     /// The origin from which the position is best counted at `position`, counted from the
     /// present origin: near a singularity of f, the singularity.
-    fn origin_near(&self, _position: f64, present: Double) -> Double {
+    fn origin_near(&self, _position: f64, present: DoubleDouble) -> DoubleDouble {
         present
     }
 }

@@ -16,7 +16,7 @@
 //! Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed.,
 //! section IV.5. Each entry is computed in double-length arithmetic and rounded once.
 
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::tables::{
     Legendre, MOST_NODES, gauss_node, gauss_weight, legendre, legendre_slope, once, twice,
 };
@@ -49,8 +49,8 @@ pub static RADAU_16: Rule<16> = Rule::radau();
 
 impl<const N: usize> Rule<N> {
     const fn gauss() -> Rule<N> {
-        let mut nodes = [Double::ZERO; N];
-        let mut weights = [Double::ZERO; N];
+        let mut nodes = [DoubleDouble::ZERO; N];
+        let mut weights = [DoubleDouble::ZERO; N];
         let mut i = 0;
         while i < N {
             let half = N / 2;
@@ -66,8 +66,8 @@ impl<const N: usize> Rule<N> {
     }
 
     const fn radau() -> Rule<N> {
-        let mut nodes = [Double::ONE; N];
-        let mut weights = [Double::ZERO; N];
+        let mut nodes = [DoubleDouble::ONE; N];
+        let mut weights = [DoubleDouble::ZERO; N];
         let mut i = 0;
         while i < N {
             if i + 1 < N {
@@ -75,23 +75,23 @@ impl<const N: usize> Rule<N> {
             }
             // (1 + u) / (N P_{N−1}(u))².
             let size = legendre(nodes[i])[N - 1].scale(N as f64);
-            weights[i] = nodes[i].add(Double::ONE).div(size.mul(size));
+            weights[i] = nodes[i].add(DoubleDouble::ONE).div(size.mul(size));
             i += 1;
         }
         Rule::new(&nodes, &weights, false)
     }
 
-    const fn new(nodes: &[Double; N], weights: &[Double; N], closed: bool) -> Rule<N> {
+    const fn new(nodes: &[DoubleDouble; N], weights: &[DoubleDouble; N], closed: bool) -> Rule<N> {
         let mut rule = Rule {
             place: [0.0; N],
             once: [[0.0; N]; N],
             twice: [[0.0; N]; N],
             series: [[0.0; N]; N],
         };
-        let mut integrated = [[[Double::ZERO; MOST_NODES]; 2]; N];
+        let mut integrated = [[[DoubleDouble::ZERO; MOST_NODES]; 2]; N];
         let mut i = 0;
         while i < N {
-            rule.place[i] = nodes[i].add(Double::ONE).value();
+            rule.place[i] = nodes[i].add(DoubleDouble::ONE).value();
             let p = legendre(nodes[i]);
             let mut k = 0;
             while k < N {
@@ -101,11 +101,11 @@ impl<const N: usize> Rule<N> {
             }
             i += 1;
         }
-        let mut exact = [[Double::ZERO; N]; N];
+        let mut exact = [[DoubleDouble::ZERO; N]; N];
         let mut j = 0;
         while j < N {
             let p = legendre(nodes[j]);
-            let mut share = [Double::ZERO; MOST_NODES];
+            let mut share = [DoubleDouble::ZERO; MOST_NODES];
             let mut k = 0;
             while k < N {
                 share[k] = weights[j].mul(p[k]).scale(0.5 * (2 * k + 1) as f64);
@@ -125,7 +125,7 @@ impl<const N: usize> Rule<N> {
         while j < N && !closed {
             let mut i = 0;
             while i < N {
-                let mut sum = Double::ZERO;
+                let mut sum = DoubleDouble::ZERO;
                 let mut k = 0;
                 while k < N {
                     sum = sum.add(exact[k][i].mul(exact[j][k]));
@@ -140,8 +140,12 @@ impl<const N: usize> Rule<N> {
     }
 }
 
-const fn dot(a: &[Double; MOST_NODES], b: &[Double; MOST_NODES], terms: usize) -> Double {
-    let mut sum = Double::ZERO;
+const fn dot(
+    a: &[DoubleDouble; MOST_NODES],
+    b: &[DoubleDouble; MOST_NODES],
+    terms: usize,
+) -> DoubleDouble {
+    let mut sum = DoubleDouble::ZERO;
     let mut k = 0;
     while k < terms {
         sum = sum.add(a[k].mul(b[k]));
@@ -151,24 +155,24 @@ const fn dot(a: &[Double; MOST_NODES], b: &[Double; MOST_NODES], terms: usize) -
 }
 
 /// The integral of P_k from −1.
-const fn once_from_begin(p: &Legendre, k: usize) -> Double {
+const fn once_from_begin(p: &Legendre, k: usize) -> DoubleDouble {
     match k {
-        0 => once(p, 0).add(Double::ONE),
+        0 => once(p, 0).add(DoubleDouble::ONE),
         _ => once(p, k),
     }
 }
 
 /// The twice repeated integral of P_k from −1.
-const fn twice_from_begin(p: &Legendre, k: usize) -> Double {
+const fn twice_from_begin(p: &Legendre, k: usize) -> DoubleDouble {
     match k {
         0 => twice(p, 0).add(p[1]),
-        1 => twice(p, 1).sub(Double::ONE.div(Double::new(3.0))),
+        1 => twice(p, 1).sub(DoubleDouble::ONE.div(DoubleDouble::new(3.0))),
         _ => twice(p, k),
     }
 }
 
 /// The i-th of the N − 1 zeros of P_{N−1} − P_N below 1, by Newton's method.
-const fn radau_node(i: usize, n: usize) -> Double {
+const fn radau_node(i: usize, n: usize) -> DoubleDouble {
     // The asymptotic zeros of the Jacobi polynomial P^(1,0), cos(π(k + 1/4)/N).
     let angle = std::f64::consts::PI * ((n - 1 - i) as f64 + 0.25) / n as f64;
     let (mut term, mut cosine, mut m) = (1.0, 1.0, 0);
@@ -177,7 +181,7 @@ const fn radau_node(i: usize, n: usize) -> Double {
         term *= -angle * angle / ((2 * m - 1) * (2 * m)) as f64;
         cosine += term;
     }
-    let mut u = Double::new(cosine);
+    let mut u = DoubleDouble::new(cosine);
     let mut round = 0;
     while round < 7 {
         let p = legendre(u);

@@ -11,7 +11,7 @@
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
 use super::step_control::{HALVED, SHORTEST, StepControl, shortened};
 use super::{Equation, LocalEquation, State};
@@ -307,7 +307,7 @@ impl EndpointSteps {
                 break None;
             }
             if taken == RENEWED {
-                way.now = way.now.add(Double::new(length).scale(taken));
+                way.now = way.now.add(DoubleDouble::new(length).scale(taken));
                 taken = 0.0;
                 local = equation.at(&way.time());
                 if let Some([_, angle]) = local.harmonic() {
@@ -330,7 +330,7 @@ impl EndpointSteps {
             guess = plan.ahead(simd, g, moved);
         };
         self.iterations = self.iterations.min(MOST_ITERATIONS);
-        way.now = way.now.add(Double::new(length).scale(taken));
+        way.now = way.now.add(DoubleDouble::new(length).scale(taken));
         if let Some((g, displacement, moved)) = last {
             if end == Some(End::Reached) {
                 // What rounding has left of the way.

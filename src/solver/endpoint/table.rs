@@ -1,7 +1,7 @@
 //! The table of Gauss–Legendre collocation with 8 nodes that are not paired, made by the
 //! compiler (see [`crate::solver::tables`]).
 
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::tables::{MOST_NODES, gauss_node, gauss_weight, legendre, sum_once, sum_twice};
 
 /// Numbers at the nodes, in two registers.
@@ -70,19 +70,19 @@ impl Dense {
             last: [0.0; N],
             series: [[0.0; N]; N],
         };
-        let mut node = [Double::ZERO; N];
+        let mut node = [DoubleDouble::ZERO; N];
         let mut i = 0;
         while i < N / 2 {
             node[i] = gauss_node(i, N);
-            node[i + N / 2] = Double::ZERO.sub(node[i]);
+            node[i + N / 2] = DoubleDouble::ZERO.sub(node[i]);
             i += 1;
         }
         let mut j = 0;
         while j < N {
             let p = legendre(node[j]);
             let weight = gauss_weight(node[j], &p, N);
-            let mut share = [Double::ZERO; MOST_NODES];
-            let mut last = Double::ZERO;
+            let mut share = [DoubleDouble::ZERO; MOST_NODES];
+            let mut last = DoubleDouble::ZERO;
             let mut k = 0;
             while k < N {
                 share[k] = weight.mul(p[k]).scale(0.5 * (2 * k + 1) as f64);
@@ -92,9 +92,9 @@ impl Dense {
                 k += 1;
             }
             dense.last[j] = last.value();
-            dense.place[j] = Double::ONE.add(node[j]).value();
+            dense.place[j] = DoubleDouble::ONE.add(node[j]).value();
             dense.plain.drift[j] = dense.place[j];
-            let tilt = share[1].div(Double::new(3.0));
+            let tilt = share[1].div(DoubleDouble::new(3.0));
             dense.plain.end[j] = [
                 share[0].sub(tilt).scale(2.0).value(),
                 share[0].scale(2.0).value(),
@@ -104,9 +104,9 @@ impl Dense {
             let mut i = 0;
             while i < N {
                 let p = legendre(node[i]);
-                let next = legendre(node[i].add(Double::new(2.0)));
+                let next = legendre(node[i].add(DoubleDouble::new(2.0)));
                 let (mut once, mut twice, mut ahead) =
-                    (share[0], Double::ZERO.sub(tilt), Double::ZERO);
+                    (share[0], DoubleDouble::ZERO.sub(tilt), DoubleDouble::ZERO);
                 // The parts that `once` and `twice` leave out.
                 twice = twice.add(share[0].mul(node[i]));
                 once = once.add(sum_once(&share, &p, 0));

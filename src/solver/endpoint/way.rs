@@ -1,19 +1,19 @@
 //! A way to go, and how far it was gone.
 
 use crate::solver::State;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 /// A way to go.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
     /// Time of the model at its begin.
-    pub begin: Double,
+    pub begin: DoubleDouble,
     /// The present, counted from there.
-    pub now: Double,
+    pub now: DoubleDouble,
     /// Present state.
     pub state: State,
     /// The time to be reached, counted from there.
-    pub target: Double,
+    pub target: DoubleDouble,
     /// Positions between which steps may go.
     pub bounds: (f64, f64),
     /// How many steps may still be solved.
@@ -22,7 +22,7 @@ pub struct Way {
 
 impl Way {
     /// Present time of the model.
-    pub fn time(&self) -> Double {
+    pub fn time(&self) -> DoubleDouble {
         self.begin.add(self.now)
     }
 }

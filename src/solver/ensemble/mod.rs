@@ -9,7 +9,7 @@
 
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::lanes::Lanes;
 use crate::solver::limits::Limits;
@@ -58,10 +58,10 @@ pub trait Ensemble {
     fn takes(equation: &Self::Equation) -> bool;
 
     /// Puts an equation into a lane, seen from `time`, to be turned on by `step`.
-    fn put(&mut self, lane: usize, equation: &Self::Equation, time: &Double, step: f64);
+    fn put(&mut self, lane: usize, equation: &Self::Equation, time: &DoubleDouble, step: f64);
 
     /// Sees the equation of a lane from another time.
-    fn see_from(&mut self, lane: usize, equation: &Self::Equation, time: &Double);
+    fn see_from(&mut self, lane: usize, equation: &Self::Equation, time: &DoubleDouble);
 
     /// The equations in lanes.
     fn pack<S: Simd, V: Lanes<S, LANES>>(&self, simd: S) -> Self::Packed<V>;
@@ -113,7 +113,7 @@ pub fn follow<F: Ensemble>(
     level: Level,
     ensemble: &mut F,
     motions: &[Member<F::Equation>],
-    [start, end]: [Double; 2],
+    [start, end]: [DoubleDouble; 2],
     tolerance: f64,
 ) -> Vec<Result<Arrival, Failure>> {
     let blank = Arrival {
@@ -183,7 +183,7 @@ struct Lane {
     /// Which of the motions it is.
     motion: usize,
     /// Its time at the end of the last block.
-    time: Double,
+    time: DoubleDouble,
     extremes: Extremes,
     /// The first step.
     first: f64,
@@ -196,8 +196,8 @@ struct Lane {
 struct Queue<'a, E> {
     level: Level,
     motions: &'a [Member<E>],
-    start: Double,
-    end: Double,
+    start: DoubleDouble,
+    end: DoubleDouble,
     tolerance: f64,
     /// The motion that the next free lane takes.
     next: usize,

@@ -2,7 +2,7 @@
 //! repeats, extremes that are recorded.
 
 use super::{Integrator, Method, Mode};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::{Limit, Limits};
 use crate::solver::orbit::Orbit;
@@ -11,7 +11,7 @@ use crate::solver::roots::crossing;
 
 impl<M: Method> Integrator<M> {
     /// Moves the present to `target`, which lies in one of the steps.
-    pub(in crate::solver) fn arrive(&mut self, target: Double) {
+    pub(in crate::solver) fn arrive(&mut self, target: DoubleDouble) {
         self.now = target;
         if self.history.is_empty() {
             // Not even the first step could be solved.
@@ -62,7 +62,7 @@ impl<M: Method> Integrator<M> {
     }
 
     /// Records the extremes of the motion up to `target`.
-    fn record(&mut self, target: Double) {
+    fn record(&mut self, target: DoubleDouble) {
         self.history.steps_mut()[self.index].segment.expand();
         let Some(mut extremes) = self.extremes else {
             return;

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::dense_output::{History, KeptStep, Segment};
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::extremes::Extremes;
 use super::limits::Limits;
 use super::orbit::Orbit;
@@ -47,9 +47,9 @@ pub enum Mode<L> {
     /// By steps, one after another.
     Dense {
         /// The first turning point, where an orbit is looked for.
-        first_turn: Option<Double>,
+        first_turn: Option<DoubleDouble>,
         /// The first event, and its time.
-        stop: Option<(L, Double)>,
+        stop: Option<(L, DoubleDouble)>,
     },
     /// There and back between two turning points for ever: no further step is integrated.
     Periodic {
@@ -107,7 +107,7 @@ pub struct Integrator<M: Method> {
     pub(super) control: StepControl,
     pub(super) limits: Limits,
     /// Time at the start; of no meaning where no step is kept.
-    pub(super) time_origin: Double,
+    pub(super) time_origin: DoubleDouble,
     /// State at the origin of time, its position counted from the origin of the position.
     pub(super) start: State,
     pub(super) position_origin: M::Origin,
@@ -116,7 +116,7 @@ pub struct Integrator<M: Method> {
     /// The step in which the present lies.
     pub(super) index: usize,
     /// The present, counted from the origin of time; on an orbit folded into it.
-    pub(super) now: Double,
+    pub(super) now: DoubleDouble,
     /// For less time than this the present stays in its step and meets nothing.
     pub(super) time_left: f64,
     pub(super) mode: Mode<M::Event>,
@@ -130,7 +130,7 @@ pub struct Integrator<M: Method> {
     /// How far the motion has swung, where that is recorded.
     extremes: Option<Extremes>,
     /// The time up to which it is, counted from the origin of time.
-    recorded_until: Double,
+    recorded_until: DoubleDouble,
     pub(super) method: M,
 }
 
@@ -147,19 +147,19 @@ impl<M: Method> Integrator<M> {
             level: Level::new(),
             control: StepControl::new(tolerance),
             limits,
-            time_origin: Double::ZERO,
+            time_origin: DoubleDouble::ZERO,
             start,
             position_origin: M::Origin::ZERO,
             history,
             index: 0,
-            now: Double::ZERO,
+            now: DoubleDouble::ZERO,
             time_left: 0.0,
             mode: Mode::UNKNOWN,
             next_length: None,
             advances: 0,
             restarts_at_every_step: false,
             extremes: None,
-            recorded_until: Double::ZERO,
+            recorded_until: DoubleDouble::ZERO,
             method,
         }
     }
@@ -209,7 +209,7 @@ impl<M: Method> Integrator<M> {
     }
 
     pub(super) fn place(&self) -> Place<'_, M::Origin> {
-        if self.history.is_empty() || self.now == Double::ZERO {
+        if self.history.is_empty() || self.now == DoubleDouble::ZERO {
             return Place::Start;
         }
         let step = &self.history.steps()[self.index];
@@ -241,7 +241,7 @@ impl<M: Method> Integrator<M> {
     }
 
     /// Forgets the motion so far, which has come to `state` at `time`.
-    pub(super) fn stand_at(&mut self, time: Double, state: State) {
+    pub(super) fn stand_at(&mut self, time: DoubleDouble, state: State) {
         self.start = state;
         self.time_origin = time;
         self.forget();
@@ -252,8 +252,8 @@ impl<M: Method> Integrator<M> {
     fn forget(&mut self) {
         self.history.clear();
         self.index = 0;
-        self.now = Double::ZERO;
-        self.recorded_until = Double::ZERO;
+        self.now = DoubleDouble::ZERO;
+        self.recorded_until = DoubleDouble::ZERO;
         self.time_left = 0.0;
         self.mode = Mode::UNKNOWN;
     }
@@ -261,7 +261,7 @@ impl<M: Method> Integrator<M> {
     /// Follows the motion for the time `step` from `clock` where it stays in its step and meets
     /// nothing; tells whether it does.
     #[inline(always)]
-    pub(super) fn advance_inside_step(&mut self, clock: &mut Double, step: f64) -> bool {
+    pub(super) fn advance_inside_step(&mut self, clock: &mut DoubleDouble, step: f64) -> bool {
         self.advances = self.advances.saturating_add(1);
         if step < self.time_left {
             self.time_left -= step;
@@ -280,9 +280,9 @@ impl<M: Method> Integrator<M> {
     #[inline(never)]
     pub(super) fn advance_by_steps(
         &mut self,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
-        further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
+        further: impl FnMut(&mut Self, DoubleDouble, &mut u32) -> Result<DoubleDouble, f64>,
     ) -> Result<Progress<M::Event>, Failure> {
         let progress = self.take_steps(clock, step, further);
         let passed = match progress {
@@ -299,9 +299,9 @@ impl<M: Method> Integrator<M> {
     #[inline(always)]
     fn take_steps(
         &mut self,
-        clock: &Double,
+        clock: &DoubleDouble,
         step: f64,
-        mut further: impl FnMut(&mut Self, Double, &mut u32) -> Result<Double, f64>,
+        mut further: impl FnMut(&mut Self, DoubleDouble, &mut u32) -> Result<DoubleDouble, f64>,
     ) -> Result<Progress<M::Event>, Failure> {
         if self.history.is_empty() {
             self.time_origin = *clock;
@@ -358,7 +358,7 @@ impl<M: Method> Integrator<M> {
             }
             match self.mode {
                 Mode::AtRest => return Ok(Progress::Whole),
-                _ if target == Double::ZERO => return Ok(Progress::Whole),
+                _ if target == DoubleDouble::ZERO => return Ok(Progress::Whole),
                 Mode::Periodic { orbit, direction } => {
                     let rest = target.since(orbit.second_turn());
                     if rest > 0.0 {
@@ -375,9 +375,14 @@ impl<M: Method> Integrator<M> {
     /// Adds a step to the history, from `state`, counted from `origin`, on. Where what has been
     /// passed is not to be kept, it is forgotten and time is counted from the begin of the step:
     /// returns by how much its origin has moved.
-    pub(super) fn push(&mut self, origin: M::Origin, segment: Segment, keeps: bool) -> Double {
+    pub(super) fn push(
+        &mut self,
+        origin: M::Origin,
+        segment: Segment,
+        keeps: bool,
+    ) -> DoubleDouble {
         let begin = self.history.end();
-        let mut shift = Double::ZERO;
+        let mut shift = DoubleDouble::ZERO;
         if !keeps || self.history.is_full() {
             if self.records_extremes() && !self.history.is_empty() {
                 self.arrive(begin);

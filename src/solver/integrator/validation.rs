@@ -2,7 +2,7 @@
 
 use super::{Integrator, Method, Mode};
 use crate::solver::dense_output::VALIDATION_TOLERANCE;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;
@@ -15,11 +15,12 @@ impl<M: Method> Integrator<M> {
     #[must_use]
     pub fn is_valid(&self) -> bool {
         let end = self.history.end();
-        let inside = |time: &Double| {
-            time.is_finite() && time.since(Double::ZERO) >= 0.0 && time.since(end) <= 0.0
+        let inside = |time: &DoubleDouble| {
+            time.is_finite() && time.since(DoubleDouble::ZERO) >= 0.0 && time.since(end) <= 0.0
         };
-        let in_step =
-            |time: &Double| inside(time) && self.history.find(*time, self.index) == self.index;
+        let in_step = |time: &DoubleDouble| {
+            inside(time) && self.history.find(*time, self.index) == self.index
+        };
         let first = self.history.steps().first();
         let length = self.next_length.unwrap_or(1.0);
         let latest = self.latest_unseen();
@@ -63,20 +64,20 @@ impl<M: Method> Integrator<M> {
 
     /// Where the present comes to at the latest before it is looked where it is, but for rounding:
     /// the time left is counted down step by step.
-    fn latest_unseen(&self) -> Double {
+    fn latest_unseen(&self) -> DoubleDouble {
         let left = (self.time_left - VALIDATION_TOLERANCE * self.history.end().value()).max(0.0);
         self.now.plus(self.mode.direction() * left)
     }
 
     /// Whether the motion turns at the ends of the orbit, and is on it.
     fn follows(&self, orbit: &Orbit) -> bool {
-        let turns_at = |time: &Double| {
+        let turns_at = |time: &DoubleDouble| {
             let steps = self.history.steps();
             let step = steps.get(self.history.find(*time, 0));
             step.is_some_and(|step| step.segment.turns_at(time.since(step.begin)))
         };
         let turns = orbit.turns();
-        turns[0].since(Double::ZERO) >= 0.0
+        turns[0].since(DoubleDouble::ZERO) >= 0.0
             && turns[1].since(self.history.end()) <= 0.0
             && orbit.is_valid()
             && [self.now, self.latest_unseen()]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::collocation::{Guess, Substep, Task, solve_by_16};
 use super::dense_output::{History, PAIRS, Segment};
-use super::double::Double;
+use super::double_double::DoubleDouble;
 use super::endpoint::{End, EndpointSteps, Way};
 use super::extremes::Extremes;
 use super::integrator::{Integrator, Method, Mode};
@@ -126,7 +126,7 @@ impl Trajectory {
     pub fn advance<E: Equation>(
         &mut self,
         equation: &E,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
         if self.advance_inside_step(clock, step) {
@@ -181,7 +181,12 @@ impl Trajectory {
     }
 
     /// Makes the first step from the origin on in 4 nodes, if that is possible.
-    fn takes_short_step<E: Equation>(&mut self, equation: &E, time: &Double, step: f64) -> bool {
+    fn takes_short_step<E: Equation>(
+        &mut self,
+        equation: &E,
+        time: &DoubleDouble,
+        step: f64,
+    ) -> bool {
         if let Some(longest) = &mut self.method.longest_short_step
             && step > *longest
         {
@@ -225,14 +230,14 @@ impl Trajectory {
     fn go_to_end<E: Equation>(
         &mut self,
         equation: &E,
-        target: Double,
+        target: DoubleDouble,
         budget: &mut u32,
-    ) -> (Double, bool) {
+    ) -> (DoubleDouble, bool) {
         let begin = self.history.end();
         self.arrive(begin);
         let mut way = Way {
             begin: self.time_origin.add(begin),
-            now: Double::ZERO,
+            now: DoubleDouble::ZERO,
             state: self.state(),
             target: target.sub(begin),
             bounds: self.bounds(),
@@ -260,7 +265,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// The length of a step that was too short to go on.
-    fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<Double, f64> {
+    fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<DoubleDouble, f64> {
         let follows_orbits = self.method.follows_orbits;
         let alone = self.restarts_at_every_step;
         let few = alone && self.next_length.is_none_or(|length| rest < FEW * length);
@@ -275,11 +280,11 @@ impl Trajectory {
             let rests = follows_orbits && equation.is_autonomous();
             if rests && local.acceleration_from(state) == 0.0 {
                 self.mode = Mode::AtRest;
-                return Ok(Double::ZERO);
+                return Ok(DoubleDouble::ZERO);
             }
             if repeats {
                 self.mode = Mode::Dense {
-                    first_turn: Some(Double::ZERO),
+                    first_turn: Some(DoubleDouble::ZERO),
                     stop: None,
                 };
             }

@@ -3,7 +3,7 @@
 use super::{Failure, Progress, Trajectory};
 use crate::solver::Equation;
 use crate::solver::dense_output::Segment;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 
 impl Trajectory {
     /// Follows the motion over one substep of 16 nodes from `clock`, no longer than `most`, and
@@ -15,7 +15,7 @@ impl Trajectory {
     pub fn advance_by_substep<E: Equation>(
         &mut self,
         equation: &E,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         most: f64,
     ) -> Result<(Segment, Progress), Failure> {
         let state = self.state();

@@ -7,7 +7,7 @@ use crate::solver::coupled::polynomials::Polynomials;
 use crate::solver::coupled::stages::{self, Iteration, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
 use crate::solver::dense_output::{PAIRS, Segment};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};
@@ -57,7 +57,7 @@ impl Trajectory {
         equation: &E,
         rest: f64,
         work: &mut u32,
-    ) -> Result<Double, f64> {
+    ) -> Result<DoubleDouble, f64> {
         let begin = self.history.end();
         let first = self.history.is_empty();
         let (mut origin, mut start) = (self.position_origin, self.full_start());
@@ -82,7 +82,7 @@ impl Trajectory {
             && equation.is_time_reversible();
         if equation.is_autonomous() && first && integrals == 0 && stands(&local, &start, states) {
             self.mode = Mode::AtRest;
-            return Ok(Double::ZERO);
+            return Ok(DoubleDouble::ZERO);
         }
         let method = Method {
             states,
@@ -126,7 +126,7 @@ impl Trajectory {
         &mut self,
         local: &L,
         start: &FullState,
-        origin: Double,
+        origin: DoubleDouble,
         method: &Method,
         most: f64,
         work: &mut u32,
@@ -225,7 +225,7 @@ impl Trajectory {
     }
 
     /// Whether the nodes lie so far beyond the limits that the step says nothing.
-    fn leaves(&self, step: &Step, origin: Double) -> bool {
+    fn leaves(&self, step: &Step, origin: DoubleDouble) -> bool {
         let [lowest, highest] = step.range.map(|position| origin.plus(position).value());
         self.limits.are_left_behind_by(lowest..=highest)
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::History;
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::integrator::{Integrator, Method, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
@@ -62,7 +62,7 @@ impl Trajectory {
     }
 
     fn within(
-        history: History<Double>,
+        history: History<DoubleDouble>,
         start: FullState,
         limits: Limits,
         tolerance: f64,
@@ -125,7 +125,7 @@ impl Trajectory {
     pub fn advance<E: CoupledEquation>(
         &mut self,
         equation: &E,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
         let mut work = Carried::MOST_STEPS;
@@ -140,7 +140,7 @@ impl Trajectory {
     pub fn advance_within<E: CoupledEquation>(
         &mut self,
         equation: &E,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
         work: &mut u32,
     ) -> Result<Progress, Failure> {

@@ -8,13 +8,13 @@ use crate::actuator::device::DeviceMotion;
 use crate::actuator::scales::Scales;
 use crate::solver::State;
 use crate::solver::coupled::{self, FullState, MOST_INTEGRALS, MOST_STATES};
-use crate::solver::double::Double;
+use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 
 /// How the motion is followed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) enum Course {
+pub(super) enum SiTrajectory {
     /// As the paper's equation.
     Plain(Box<Trajectory>),
     /// As that of a real actuator.
@@ -23,30 +23,30 @@ pub(super) enum Course {
 
 /// Calls the same method of either trajectory.
 macro_rules! either {
-    ($course:expr, $trajectory:ident => $call:expr) => {
-        match $course {
-            Course::Plain($trajectory) => $call,
-            Course::Coupled($trajectory) => $call,
+    ($either:expr, $trajectory:ident => $call:expr) => {
+        match $either {
+            SiTrajectory::Plain($trajectory) => $call,
+            SiTrajectory::Coupled($trajectory) => $call,
         }
     };
 }
 
-impl Course {
-    /// A course from this state on.
+impl SiTrajectory {
+    /// A trajectory from this state on.
     pub fn of(
         scene: &SiScene,
         motion: &DeviceMotion,
         scales: &Scales,
         state: &SiState,
         tolerance: f64,
-    ) -> Course {
+    ) -> SiTrajectory {
         let start = full_state(motion, scales, state);
         if motion.is_plain() {
             let plain = Trajectory::new(start.motion, scene.limits, tolerance);
-            Course::Plain(Box::new(plain))
+            SiTrajectory::Plain(Box::new(plain))
         } else {
             let coupled = coupled::Trajectory::new(start, scene.limits, tolerance);
-            Course::Coupled(Box::new(coupled))
+            SiTrajectory::Coupled(Box::new(coupled))
         }
     }
 
@@ -62,25 +62,25 @@ impl Course {
     ) {
         let start = full_state(motion, scales, state);
         match self {
-            Course::Plain(plain) if motion.is_plain() => {
+            SiTrajectory::Plain(plain) if motion.is_plain() => {
                 **plain = Trajectory::new(start.motion, scene.limits, tolerance);
             }
-            Course::Coupled(coupled) if !motion.is_plain() => {
+            SiTrajectory::Coupled(coupled) if !motion.is_plain() => {
                 coupled.begin_anew(start, scene.limits, tolerance);
             }
-            other => *other = Course::of(scene, motion, scales, state, tolerance),
+            other => *other = SiTrajectory::of(scene, motion, scales, state, tolerance),
         }
     }
 
     pub fn is_plain(&self) -> bool {
-        matches!(self, Course::Plain(_))
+        matches!(self, SiTrajectory::Plain(_))
     }
 
     /// Where the stretch is counted from, and the stretch from there.
-    pub fn position_from_origin(&self) -> (Double, f64) {
+    pub fn position_from_origin(&self) -> (DoubleDouble, f64) {
         match self {
-            Course::Plain(trajectory) => (Double::ZERO, trajectory.position()),
-            Course::Coupled(trajectory) => trajectory.position_from_origin(),
+            SiTrajectory::Plain(trajectory) => (DoubleDouble::ZERO, trajectory.position()),
+            SiTrajectory::Coupled(trajectory) => trajectory.position_from_origin(),
         }
     }
 
@@ -91,22 +91,22 @@ impl Course {
     /// The first-order states.
     pub fn internal(&self) -> [f64; MOST_STATES] {
         match self {
-            Course::Plain(_) => [0.0; MOST_STATES],
-            Course::Coupled(trajectory) => trajectory.internal(),
+            SiTrajectory::Plain(_) => [0.0; MOST_STATES],
+            SiTrajectory::Coupled(trajectory) => trajectory.internal(),
         }
     }
 
     /// Energies exchanged since the start, where they are recorded.
     pub fn integrals(&self) -> [f64; MOST_INTEGRALS] {
         match self {
-            Course::Plain(_) => [0.0; MOST_INTEGRALS],
-            Course::Coupled(trajectory) => trajectory.integrals(),
+            SiTrajectory::Plain(_) => [0.0; MOST_INTEGRALS],
+            SiTrajectory::Coupled(trajectory) => trajectory.integrals(),
         }
     }
 
     /// Adds energies that are exchanged at once.
     pub fn book(&mut self, exchanged: &[f64; MOST_INTEGRALS]) {
-        if let Course::Coupled(trajectory) = self {
+        if let SiTrajectory::Coupled(trajectory) = self {
             trajectory.jump(&[0.0; MOST_STATES], exchanged);
         }
     }
@@ -127,11 +127,11 @@ impl Course {
     pub fn advance(
         &mut self,
         motion: &DeviceMotion,
-        clock: &mut Double,
+        clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress<coupled::Event>, Failure> {
         match self {
-            Course::Plain(trajectory) => {
+            SiTrajectory::Plain(trajectory) => {
                 let progress = trajectory.advance(&motion.plain(), clock, step)?;
                 Ok(match progress {
                     Progress::Whole => Progress::Whole,
@@ -141,7 +141,7 @@ impl Course {
                     },
                 })
             }
-            Course::Coupled(trajectory) => trajectory.advance(motion, clock, step),
+            SiTrajectory::Coupled(trajectory) => trajectory.advance(motion, clock, step),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Double-double arithmetic: an unevaluated sum of two `f64`, about 32 digits.
+//! DoubleDouble-double arithmetic: an unevaluated sum of two `f64`, about 32 digits.
 //!
 //! Origin: T. J. Dekker, "A floating-point technique for extending the
 //! available precision", Numer. Math. 18 (1971) 224–242; the sums are Knuth's.
@@ -11,21 +11,21 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A double-double number `high + low`. After all operations but [`Double::plus`], `low`
+/// A double-double number `high + low`. After all operations but [`DoubleDouble::plus`], `low`
 /// is at most half an ulp of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Double {
+pub struct DoubleDouble {
     /// About the number rounded to `f64`.
     pub high: f64,
     /// The rest.
     pub low: f64,
 }
 
-impl Double {
+impl DoubleDouble {
     /// Zero.
-    pub const ZERO: Double = Double::new(0.0);
+    pub const ZERO: DoubleDouble = DoubleDouble::new(0.0);
     /// One.
-    pub const ONE: Double = Double::new(1.0);
+    pub const ONE: DoubleDouble = DoubleDouble::new(1.0);
 
     /// Whether it is finite.
     #[must_use]
@@ -36,8 +36,8 @@ impl Double {
     /// The number `value`, exactly.
     #[must_use]
     #[inline]
-    pub const fn new(value: f64) -> Double {
-        Double {
+    pub const fn new(value: f64) -> DoubleDouble {
+        DoubleDouble {
             high: value,
             low: 0.0,
         }
@@ -46,7 +46,7 @@ impl Double {
     /// `self + other`.
     #[must_use]
     #[inline]
-    pub const fn add(self, other: Double) -> Double {
+    pub const fn add(self, other: DoubleDouble) -> DoubleDouble {
         // A branch is foreseen; the chain of sums below would be waited for.
         if other.high == 0.0 && other.low == 0.0 {
             return self;
@@ -54,34 +54,34 @@ impl Double {
         let sum = exact_sum(self.high, other.high);
         let tail = exact_sum(self.low, other.low);
         let head = exact_sum(sum.high, sum.low + tail.high);
-        let Double { high, low } = head;
+        let DoubleDouble { high, low } = head;
         exact_sum(high, low + tail.low)
     }
 
     /// `self + addend`, for a clock: each sum waits for a single operation of the last one.
-    /// What the roundings lose adds up in `low`; see [`Double::renormalized`].
+    /// What the roundings lose adds up in `low`; see [`DoubleDouble::renormalized`].
     #[must_use]
     #[inline]
-    pub const fn plus(self, addend: f64) -> Double {
+    pub const fn plus(self, addend: f64) -> DoubleDouble {
         let sum = exact_sum(self.high, addend);
-        Double {
+        DoubleDouble {
             high: sum.high,
             low: sum.low + self.low,
         }
     }
 
     /// Renormalizes: moves as much as possible into `high` and keeps the value. After thousands of
-    /// [`Double::plus`] the roundings of a grown `low` might be seen.
+    /// [`DoubleDouble::plus`] the roundings of a grown `low` might be seen.
     #[must_use]
     #[inline]
-    pub const fn renormalized(self) -> Double {
+    pub const fn renormalized(self) -> DoubleDouble {
         exact_sum(self.high, self.low)
     }
 
     /// `self − other`, rounded to `f64`: accurate also where the two are close.
     #[must_use]
     #[inline]
-    pub const fn since(self, other: Double) -> f64 {
+    pub const fn since(self, other: DoubleDouble) -> f64 {
         // One after the other: two differences at a time would be taken from one load, which
         // waits long for numbers that have just been put down one by one.
         ((self.high - other.high) + self.low) - other.low
@@ -90,8 +90,8 @@ impl Double {
     /// `self − other`.
     #[must_use]
     #[inline]
-    pub const fn sub(self, other: Double) -> Double {
-        self.add(Double {
+    pub const fn sub(self, other: DoubleDouble) -> DoubleDouble {
+        self.add(DoubleDouble {
             high: -other.high,
             low: -other.low,
         })
@@ -99,7 +99,7 @@ impl Double {
 
     /// `self · other`.
     #[must_use]
-    pub const fn mul(self, other: Double) -> Double {
+    pub const fn mul(self, other: DoubleDouble) -> DoubleDouble {
         let product = exact_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         exact_sum(product.high, product.low + cross)
@@ -107,24 +107,24 @@ impl Double {
 
     /// `self / other`.
     #[must_use]
-    pub const fn div(self, other: Double) -> Double {
+    pub const fn div(self, other: DoubleDouble) -> DoubleDouble {
         let first = self.high / other.high;
-        let rest = self.sub(other.mul(Double::new(first)));
+        let rest = self.sub(other.mul(DoubleDouble::new(first)));
         let second = rest.high / other.high;
-        let rest = rest.sub(other.mul(Double::new(second)));
-        exact_sum(first, second).add(Double::new(rest.high / other.high))
+        let rest = rest.sub(other.mul(DoubleDouble::new(second)));
+        exact_sum(first, second).add(DoubleDouble::new(rest.high / other.high))
     }
 
     /// `self · factor`.
     #[must_use]
-    pub const fn scale(self, factor: f64) -> Double {
-        self.mul(Double::new(factor))
+    pub const fn scale(self, factor: f64) -> DoubleDouble {
+        self.mul(DoubleDouble::new(factor))
     }
 
     /// The square root of a number above 0: that of `f64` and one step of Newton's method.
     #[must_use]
-    pub fn sqrt(self) -> Double {
-        let root = Double::new(self.value().sqrt());
+    pub fn sqrt(self) -> DoubleDouble {
+        let root = DoubleDouble::new(self.value().sqrt());
         let rest = self.sub(root.mul(root));
         root.add(rest.div(root.scale(2.0)))
     }
@@ -139,10 +139,10 @@ impl Double {
 
 /// `a + b` without error (Knuth).
 #[inline]
-const fn exact_sum(a: f64, b: f64) -> Double {
+const fn exact_sum(a: f64, b: f64) -> DoubleDouble {
     let high = a + b;
     let shadow = high - a;
-    Double {
+    DoubleDouble {
         high,
         low: (a - (high - shadow)) + (b - shadow),
     }
@@ -150,12 +150,12 @@ const fn exact_sum(a: f64, b: f64) -> Double {
 
 /// `a · b` without error (Dekker; not by fused multiply-add, which is neither
 /// `const` nor fast on every processor).
-const fn exact_product(a: f64, b: f64) -> Double {
+const fn exact_product(a: f64, b: f64) -> DoubleDouble {
     let high = a * b;
     let [a_high, a_low] = veltkamp_split(a);
     let [b_high, b_low] = veltkamp_split(b);
     let low = ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low;
-    Double { high, low }
+    DoubleDouble { high, low }
 }
 
 /// `a` as a sum of two numbers of 26 bits, the larger one first (Veltkamp).
@@ -172,33 +172,33 @@ mod tests {
 
     #[test]
     fn a_third_times_three_is_one_to_thirty_digits() {
-        let third = Double::ONE.div(Double::new(3.0));
-        let rest = third.scale(3.0).sub(Double::ONE);
+        let third = DoubleDouble::ONE.div(DoubleDouble::new(3.0));
+        let rest = third.scale(3.0).sub(DoubleDouble::ONE);
         assert!(rest.value().abs() < 1e-31, "{rest:?}");
     }
 
     #[test]
     fn a_root_squared_is_the_number_to_thirty_digits() {
-        let root = Double::new(2.0).sqrt();
-        let rest = root.mul(root).sub(Double::new(2.0));
+        let root = DoubleDouble::new(2.0).sqrt();
+        let rest = root.mul(root).sub(DoubleDouble::new(2.0));
         assert!(rest.value().abs() < 1e-31, "{rest:?}");
     }
 
     #[test]
     fn a_sum_keeps_what_f64_loses() {
-        let sum = Double::new(1e9).add(Double::new(1e-9));
-        assert_eq!(sum.sub(Double::new(1e9)).value(), 1e-9);
+        let sum = DoubleDouble::new(1e9).add(DoubleDouble::new(1e-9));
+        assert_eq!(sum.sub(DoubleDouble::new(1e9)).value(), 1e-9);
     }
 
     #[test]
     fn a_clock_keeps_what_a_million_steps_lose() {
         for (start, step) in [(0.0, 0.1), (1e9, 1e-3), (1e9, 1e-9)] {
-            let mut clock = Double::new(start);
+            let mut clock = DoubleDouble::new(start);
             for _ in 0..1_000 {
                 clock = (0..1_000).fold(clock, |clock, _| clock.plus(step));
                 clock = clock.renormalized();
             }
-            let exact = Double::new(start).add(Double::new(step).scale(1e6));
+            let exact = DoubleDouble::new(start).add(DoubleDouble::new(step).scale(1e6));
             let error = clock.since(exact);
             assert!(error.abs() < 1e-15, "{start} + 1e6 · {step}: {error}");
         }
@@ -206,15 +206,15 @@ mod tests {
 
     #[test]
     fn a_difference_of_close_numbers_is_accurate() {
-        let late = Double::new(1e9).plus(0.1).plus(1e-9);
-        let difference = late.since(Double::new(1e9).plus(0.1));
+        let late = DoubleDouble::new(1e9).plus(0.1).plus(1e-9);
+        let difference = late.since(DoubleDouble::new(1e9).plus(0.1));
         assert!((difference - 1e-9).abs() < 1e-23, "{difference:e}");
     }
 
     #[test]
     fn a_product_is_exact_in_both_halves() {
         let x = 1.0 + f64::EPSILON;
-        let square = Double::new(x).mul(Double::new(x));
+        let square = DoubleDouble::new(x).mul(DoubleDouble::new(x));
         assert_eq!(square.high, 1.0 + 2.0 * f64::EPSILON);
         assert_eq!(square.low, f64::EPSILON * f64::EPSILON);
     }
