@@ -249,8 +249,8 @@ impl<M: Model> Run<M> {
             Failure::TooManySubsteps { most, .. } => {
                 self.cut_from = Some(current);
                 Fault::discard(format!(
-                    "{at}: the step needs more than {most} substeps; use shorter steps from \
-                     there on"
+                    "{at}: the step needs more than {most} substeps or iterations; use shorter \
+                     steps from there on"
                 ))
             }
         }

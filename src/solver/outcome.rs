@@ -26,9 +26,9 @@ pub enum Failure {
         /// The time from the begin of the advance.
         after: f64,
     },
-    /// The advance needs more substeps than one call may take.
+    /// The advance needs more work than one call may take.
     TooManySubsteps {
-        /// The number of substeps allowed.
+        /// The number of substeps allowed, or of iterations where these are counted (coupled systems).
         most: u32,
         /// The time from the begin of the advance.
         after: f64,
