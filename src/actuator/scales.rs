@@ -112,8 +112,8 @@ pub enum SiElasticity<P = f64> {
 pub struct Scales<P = f64> {
     /// t0 in s.
     pub time: P,
-    /// Its value in double length.
-    pub exact_time: DoubleDouble,
+    /// 1/t0 in 1/s, in double length.
+    pub exact_frequency: DoubleDouble,
     /// V0 in V.
     pub voltage: P,
     /// Q0 in C.
@@ -139,14 +139,16 @@ impl Scales {
         let exact_time = ratio
             .sqrt()
             .mul(DoubleDouble::new(device.layers).scale(device.thickness));
-        Scales::in_time(device, exact_time.value(), exact_time)
+        let exact_frequency = DoubleDouble::ONE.div(exact_time);
+        Scales::in_time(device, exact_time.value(), exact_frequency)
     }
 
-    /// A time in s, kept as a double-length sum, as a nondimensional one. Divided once, no
+    /// A time in s, kept as a double-length sum, as a nondimensional one. Of the whole time, no
     /// rounding adds up from step to step.
     #[must_use]
+    #[inline]
     pub fn time(&self, seconds: DoubleDouble) -> DoubleDouble {
-        seconds.div(self.exact_time)
+        seconds.mul(self.exact_frequency)
     }
 
     /// Whether the numbers can be scales: to be checked where they do not come from this process.
@@ -154,7 +156,7 @@ impl Scales {
     pub fn are_valid(&self) -> bool {
         let Scales {
             time,
-            exact_time,
+            exact_frequency,
             voltage,
             charge,
             energy,
@@ -164,7 +166,7 @@ impl Scales {
             field,
         } = *self;
         let electrical = [voltage, charge, capacitance, field];
-        let mechanical = [time, exact_time.value(), energy, force, length];
+        let mechanical = [time, exact_frequency.value(), energy, force, length];
         let mut all = electrical.into_iter().chain(mechanical);
         all.all(|scale| scale > 0.0 && scale.is_finite())
     }
@@ -176,19 +178,20 @@ impl Scales<Dual> {
     pub fn along(device: &SiDevice<Dual>) -> Scales<Dual> {
         let ratio = device.density / (Dual::constant(12.0) * device.shear_modulus);
         let time = ratio.sqrt() * device.layers * device.thickness;
-        Scales::in_time(device, time, DoubleDouble::new(time.value()))
+        let exact_frequency = DoubleDouble::ONE.div(DoubleDouble::new(time.value()));
+        Scales::in_time(device, time, exact_frequency)
     }
 }
 
 impl<P: Parameter> Scales<P> {
-    fn in_time(device: &SiDevice<P>, time: P, exact_time: DoubleDouble) -> Scales<P> {
+    fn in_time(device: &SiDevice<P>, time: P, exact_frequency: DoubleDouble) -> Scales<P> {
         let (mu, side) = (device.shear_modulus, device.side);
         let permittivity = device.relative_permittivity * mu.same(VACUUM_PERMITTIVITY);
         let stack = device.layers * device.thickness;
         let field = (mu / permittivity).sqrt();
         Scales {
             time,
-            exact_time,
+            exact_frequency,
             voltage: device.thickness * field,
             charge: device.layers * side * side * (permittivity * mu).sqrt(),
             energy: mu * side * side * stack,

@@ -1,7 +1,7 @@
 //! The motion of the actuator in SI units, from communication point to communication point.
 //!
-//! The clock is in seconds, the motion that is followed in its own unit of time. At each step the
-//! clock is divided by that unit: what is rounded does not add up.
+//! The clock is in seconds, the motion that is followed in its own unit of time. Each step converts
+//! the whole clock: what is rounded does not add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,10 @@ pub struct SiMotion {
     trajectory: SiTrajectory,
     /// By how much the trajectory is ahead of the clock: the rounding of its last step, nondimensional.
     lead: f64,
+    /// The clock after the last step and the time to which the trajectory had come, as [`SiMotion::reached`]
+    /// would compute it.
+    #[serde(skip)]
+    last: Option<(DoubleDouble, DoubleDouble)>,
     /// What the trajectory follows, nondimensional.
     motion: DeviceMotion,
     scales: Scales,
@@ -122,7 +126,10 @@ impl SiMotion {
 
     /// The nondimensional time to which the trajectory has come, the clock being at `time`.
     fn reached(&self, time: &DoubleDouble) -> DoubleDouble {
-        self.scales.time(*time).plus(self.lead)
+        match self.last {
+            Some((clock, reached)) if clock == *time => reached,
+            _ => self.scales.time(*time).plus(self.lead),
+        }
     }
 
     /// The present as the motion that is followed sees it, the clock being at `time`.
@@ -170,7 +177,7 @@ impl SiMotion {
         let (exchanged, extremes) = (self.exchanged(), self.extremes());
         self.trajectory
             .begin_anew(scene, &motion, &scales, &state, self.tolerance);
-        self.lead = 0.0;
+        (self.lead, self.last) = (0.0, None);
         (self.charge, self.dashpots) = (state.charge, state.dashpots);
         (self.motion, self.scales) = (motion, scales);
         self.earlier = extremes;
@@ -198,6 +205,7 @@ impl Integration<Si> for SiMotion {
         let mut begun = SiMotion {
             trajectory,
             lead: 0.0,
+            last: None,
             motion,
             scales,
             tolerance,
@@ -240,9 +248,11 @@ impl Integration<Si> for SiMotion {
             if progress == Ok(Progress::Whole) {
                 *clock = target;
                 self.lead = reached.since(end);
+                self.last = Some((target, end.plus(self.lead)));
                 return Ok(Progress::Whole);
             }
             // In s.
+            self.last = None;
             let after = step - end.since(reached) * second;
             *clock = begin.plus(after).renormalized();
             self.lead = reached.since(self.scales.time(*clock));

@@ -132,7 +132,10 @@ impl SiTrajectory {
     ) -> Result<Progress<coupled::Event>, Failure> {
         match self {
             SiTrajectory::Plain(trajectory) => {
-                let progress = trajectory.advance(&motion.plain(), clock, step)?;
+                if trajectory.advance_inside_step(clock, step) {
+                    return Ok(Progress::Whole);
+                }
+                let progress = trajectory.advance_beyond_step(&motion.plain(), clock, step)?;
                 Ok(match progress {
                     Progress::Whole => Progress::Whole,
                     Progress::Stopped { limit, after } => Progress::Stopped {

@@ -99,6 +99,7 @@ impl DoubleDouble {
 
     /// `self · other`.
     #[must_use]
+    #[inline]
     pub const fn mul(self, other: DoubleDouble) -> DoubleDouble {
         let product = exact_product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;

@@ -1,4 +1,7 @@
 //! Numbers at all nodes of a step, as one number of the equation.
+//!
+//! WebAssembly is compiled without vectors: 16 scalars in place of each operation, all inlined, would take
+//! minutes to compile.
 
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -17,13 +20,13 @@ pub(super) struct Row<S: Simd, const R: usize>([f64x8<S>; R]);
 
 impl<S: Simd, const R: usize> Row<S, R> {
     /// The same number at all nodes.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn fill(simd: S, value: f64) -> Self {
         Row([f64x8::fill(simd, value); R])
     }
 
     /// These numbers.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn load<const N: usize>(simd: S, values: &[f64; N]) -> Self {
         let mut row = Row::fill(simd, 0.0);
         for r in 0..R {
@@ -35,7 +38,7 @@ impl<S: Simd, const R: usize> Row<S, R> {
     }
 
     /// The numbers.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn store<const N: usize>(self) -> [f64; N] {
         let mut values = [0.0; N];
         for r in 0..R {
@@ -45,7 +48,7 @@ impl<S: Simd, const R: usize> Row<S, R> {
     }
 
     /// `Σ_j column[j] · value[j]`, in a fixed order.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn product<const N: usize>(simd: S, columns: &Columns<N>, values: &[f64; N]) -> Self {
         let mut sums = [Row::fill(simd, 0.0); 2];
         for j in 0..N {
@@ -56,7 +59,7 @@ impl<S: Simd, const R: usize> Row<S, R> {
     }
 
     /// The size of the largest number; NaN where one is that.
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn largest(self) -> f64 {
         let mut largest = 0.0_f64;
         for r in 0..R {
@@ -66,7 +69,7 @@ impl<S: Simd, const R: usize> Row<S, R> {
         largest
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn each(mut self, of: impl Fn(f64x8<S>) -> f64x8<S>) -> Self {
         for r in 0..R {
             self.0[r] = of(self.0[r]);
@@ -80,7 +83,7 @@ macro_rules! operators {
         impl<S: Simd, const R: usize> $operator for Row<S, R> {
             type Output = Self;
 
-            #[inline(always)]
+            #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
             fn $name(mut self, other: Self) -> Self {
                 for r in 0..R {
                     self.0[r] = $operator::$name(self.0[r], other.0[r]);
@@ -94,12 +97,12 @@ macro_rules! operators {
 operators!(Add add, Sub sub, Mul mul, Div div);
 
 impl<S: Simd, const R: usize> Number for Row<S, R> {
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn same(self, value: f64) -> Self {
         Row([self.0[0].same(value); R])
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn mul_add(mut self, factor: Self, addend: Self) -> Self {
         for r in 0..R {
             self.0[r] = Number::mul_add(self.0[r], factor.0[r], addend.0[r]);
@@ -107,22 +110,22 @@ impl<S: Simd, const R: usize> Number for Row<S, R> {
         self
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn sin(self) -> Self {
         self.each(Number::sin)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn exp(self) -> Self {
         self.each(Number::exp)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn sqrt(self) -> Self {
         self.each(Number::sqrt)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn magnitude(self) -> Self {
         self.each(Number::magnitude)
     }

@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Where nothing is stiff, B_k and S are 1: fixed-point (Picard) iteration, on Gauss nodes. Else they
-//! are those of Newton's method (see [`super::newton`]), on Radau nodes. The slopes are solved
+//! are those of Newton's method (module `newton`), on Radau nodes. The slopes are solved
 //! for, not the states: where a state relaxes fast, its equation would lose the digits of z'.
 
 use fearless_simd::{Level, Simd, dispatch};

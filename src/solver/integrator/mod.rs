@@ -261,7 +261,7 @@ impl<M: Method> Integrator<M> {
     /// Follows the motion for the time `step` from `clock` where it stays in its step and meets
     /// nothing; tells whether it does.
     #[inline(always)]
-    pub(super) fn advance_inside_step(&mut self, clock: &mut DoubleDouble, step: f64) -> bool {
+    pub(crate) fn advance_inside_step(&mut self, clock: &mut DoubleDouble, step: f64) -> bool {
         self.advances = self.advances.saturating_add(1);
         if step < self.time_left {
             self.time_left -= step;

@@ -132,6 +132,18 @@ impl Trajectory {
         if self.advance_inside_step(clock, step) {
             return Ok(Progress::Whole);
         }
+        self.advance_beyond_step(equation, clock, step)
+    }
+
+    /// The rest of [`Trajectory::advance`], where [`Integrator::advance_inside_step`] has told that the
+    /// motion leaves its step.
+    #[inline]
+    pub(crate) fn advance_beyond_step<E: Equation>(
+        &mut self,
+        equation: &E,
+        clock: &mut DoubleDouble,
+        step: f64,
+    ) -> Result<Progress, Failure> {
         let first = self.restarts_at_every_step && self.advances == 1;
         if first && self.method.takes_endpoint_steps {
             // First, since all that the next step does with the time waits for it.
