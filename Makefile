@@ -90,7 +90,7 @@ define install_wheel
 [ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt tests/requirements.txt ] || \
 { $(PYTHON) -m venv --clear --without-pip $(WHEEL_ENV) && \
 cat requirements.txt examples/requirements.txt python/requirements.txt tests/requirements.txt >$(WHEEL_ENV)/versions.txt && \
-$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --constraint $(WHEEL_ENV)/versions.txt \
+$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --no-compile --constraint $(WHEEL_ENV)/versions.txt \
 "$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest pytest-timeout && touch $(WHEEL_ENV)/installed; } && \
 $(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --force-reinstall --no-deps $(WHEEL)/*.whl
 endef
@@ -265,7 +265,7 @@ release-tests: fmu native $(TESTS_INSTALLED) $(RELEASE_INSTALLED) $(PACKAGE_INST
 
 host-tests: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Other hosts and memory checkers)
-	@$(CARGO) build --quiet --example run_with_fmi
+	@$(CARGO) build --quiet --workspace --example run_with_fmi
 	@$(PYTEST) tests/hosts $(JUNIT)
 
 page-tests: page fmu $(TESTS_INSTALLED) $(PAGE_TESTS_INSTALLED) $(PACKAGE_INSTALLED)
