@@ -7,10 +7,8 @@
 //!
 //! Accuracy: the end of a substep superconverges; between, the polynomial has
 //! the error of interpolating f, estimated by the end of its Legendre series.
-//! Gain over the stages of a coupled system ([`super::coupled::stages`]), which can follow this motion too: a sixth of
-//! the instructions, on a conservative actuator under an alternating voltage at 1e-9, where the coupled one was held to a
-//! tenth of the tolerance. Nodes are folded into pairs, and
-//! nothing is kept of states and integrals.
+//! The stages of a coupled system ([`super::coupled::stages`]) can follow this motion too. Here nodes are
+//! folded into pairs, and nothing is kept of states and integrals.
 //!
 //! No arithmetic depends on the number of lanes, so that every SIMD level with
 //! a fused multiply-add gives the same bits.
