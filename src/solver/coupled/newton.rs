@@ -41,14 +41,32 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
     /// The matrices at these stages of a step, `half` of which is given; those of the first-order
     /// states alone, or else the `whole`.
     ///
+    /// In a function of its own for each set of instructions, which is compiled in much less time than as a part of
+    /// the iteration.
+    ///
     /// # Errors
     /// [`Diverged`] where one is singular.
+    #[inline(never)]
+    pub fn at<L: LocalCoupledEquation>(
+        simd: S,
+        step: (&Rule<N>, f64),
+        equation: (&L, L::Load<Row<S, R>>, usize),
+        at: &Stage<Row<S, R>>,
+        sizes: &Sizes,
+        whole: bool,
+    ) -> Result<Newton<S, R, N>, Diverged> {
+        simd.vectorize(
+            #[inline(always)]
+            || Newton::made(simd, step, equation, at, sizes, whole),
+        )
+    }
+
     #[inline(always)]
     #[allow(
         clippy::needless_range_loop,
         reason = "rows and columns of matrices, and states"
     )]
-    pub fn at<L: LocalCoupledEquation>(
+    fn made<L: LocalCoupledEquation>(
         simd: S,
         (rule, half): (&Rule<N>, f64),
         (local, load, states): (&L, L::Load<Row<S, R>>, usize),
