@@ -4,7 +4,7 @@ use fmi::fmi2::binding::*;
 
 use super::calls::Call;
 use super::guard::{guarded, place, slice, slice_mut};
-
+use crate::instance::{Fault, Instance};
 use crate::model::Model;
 
 pub unsafe extern "C" fn fmi2EnterEventMode<M: Model>(c: fmi2Component) -> fmi2Status {
@@ -93,12 +93,9 @@ pub unsafe extern "C" fn fmi2GetDerivatives<M: Model>(
     derivatives: *mut fmi2Real,
     nx: usize,
 ) -> fmi2Status {
-    guarded::<M>(c, "fmi2GetDerivatives", Call::GetContinuous, |component| {
-        // SAFETY: the host's array has room for `nx` values, or is null.
-        let values = unsafe { slice_mut(derivatives, nx, "derivatives") }?;
-        component.instance.derivatives(values)?;
-        Ok(None)
-    })
+    let (call, array) = (Call::GetContinuous, (derivatives, nx, "derivatives"));
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { fill::<M>(c, "fmi2GetDerivatives", call, array, Instance::derivatives) }
 }
 
 pub unsafe extern "C" fn fmi2GetEventIndicators<M: Model>(
@@ -106,17 +103,13 @@ pub unsafe extern "C" fn fmi2GetEventIndicators<M: Model>(
     eventIndicators: *mut fmi2Real,
     ni: usize,
 ) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2GetEventIndicators",
+    let (call, array) = (
         Call::GetContinuous,
-        |component| {
-            // SAFETY: the host's array has room for `ni` values, or is null.
-            let values = unsafe { slice_mut(eventIndicators, ni, "eventIndicators") }?;
-            component.instance.event_indicators(values)?;
-            Ok(None)
-        },
-    )
+        (eventIndicators, ni, "eventIndicators"),
+    );
+    let of = Instance::event_indicators;
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { fill::<M>(c, "fmi2GetEventIndicators", call, array, of) }
 }
 
 pub unsafe extern "C" fn fmi2GetContinuousStates<M: Model>(
@@ -124,17 +117,10 @@ pub unsafe extern "C" fn fmi2GetContinuousStates<M: Model>(
     x: *mut fmi2Real,
     nx: usize,
 ) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2GetContinuousStates",
-        Call::GetContinuous,
-        |component| {
-            // SAFETY: the host's array has room for `nx` values, or is null.
-            let values = unsafe { slice_mut(x, nx, "x") }?;
-            component.instance.continuous_states(values)?;
-            Ok(None)
-        },
-    )
+    let (call, array) = (Call::GetContinuous, (x, nx, "x"));
+    let of = Instance::continuous_states;
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { fill::<M>(c, "fmi2GetContinuousStates", call, array, of) }
 }
 
 pub unsafe extern "C" fn fmi2GetNominalsOfContinuousStates<M: Model>(
@@ -142,15 +128,24 @@ pub unsafe extern "C" fn fmi2GetNominalsOfContinuousStates<M: Model>(
     x_nominal: *mut fmi2Real,
     nx: usize,
 ) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2GetNominalsOfContinuousStates",
-        Call::GetNominals,
-        |component| {
-            // SAFETY: the host's array has room for `nx` values, or is null.
-            let values = unsafe { slice_mut(x_nominal, nx, "x_nominal") }?;
-            component.instance.nominals_of_states(values)?;
-            Ok(None)
-        },
-    )
+    let (call, array) = (Call::GetNominals, (x_nominal, nx, "x_nominal"));
+    let of = Instance::nominals_of_states;
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { fill::<M>(c, "fmi2GetNominalsOfContinuousStates", call, array, of) }
+}
+
+/// Fills an array of the host, given with its length and its name, with what the instance tells.
+unsafe fn fill<M: Model>(
+    c: fmi2Component,
+    function: &str,
+    call: Call,
+    (array, count, name): (*mut fmi2Real, usize, &str),
+    of: fn(&Instance<M>, &mut [f64]) -> Result<(), Fault>,
+) -> fmi2Status {
+    guarded::<M>(c, function, call, |component| {
+        // SAFETY: the host's array has room for `count` values, or is null.
+        let values = unsafe { slice_mut(array, count, name) }?;
+        of(&component.instance, values)?;
+        Ok(None)
+    })
 }

@@ -5,7 +5,7 @@ use fmi::fmi2::binding::*;
 
 use super::calls::Call;
 use super::guard::{guarded, place};
-use crate::instance::Fault;
+use crate::instance::{Fault, Instance};
 use crate::model::Model;
 
 pub unsafe extern "C" fn fmi2CancelStep<M: Model>(c: fmi2Component) -> fmi2Status {
@@ -18,19 +18,16 @@ pub unsafe extern "C" fn fmi2GetStatus<M: Model>(
     s: fmi2StatusKind,
     value: *mut fmi2Status,
 ) -> fmi2Status {
-    guarded::<M>(c, "fmi2GetStatus", Call::GetStatus, |component| {
-        // SAFETY: the host points to a place for one value, or passes null.
-        let value = unsafe { place(value, "value") }?;
-        if s != fmi2StatusKind_fmi2DoStepStatus {
-            return Err(no_such_status());
-        }
-        *value = if component.instance.last_step_was_discarded() {
+    let of = |instance: &Instance<M>| {
+        let status = if instance.last_step_was_discarded() {
             fmi2Status_fmi2Discard
         } else {
             fmi2Status_fmi2OK
         };
-        Ok(None)
-    })
+        (s == fmi2StatusKind_fmi2DoStepStatus).then_some(status)
+    };
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { get::<M, _>(c, "fmi2GetStatus", value, of) }
 }
 
 pub unsafe extern "C" fn fmi2GetRealStatus<M: Model>(
@@ -38,15 +35,11 @@ pub unsafe extern "C" fn fmi2GetRealStatus<M: Model>(
     s: fmi2StatusKind,
     value: *mut fmi2Real,
 ) -> fmi2Status {
-    guarded::<M>(c, "fmi2GetRealStatus", Call::GetStatus, |component| {
-        // SAFETY: the host points to a place for one value, or passes null.
-        let value = unsafe { place(value, "value") }?;
-        if s != fmi2StatusKind_fmi2LastSuccessfulTime {
-            return Err(no_such_status());
-        }
-        *value = component.instance.last_successful_time();
-        Ok(None)
-    })
+    let of = |instance: &Instance<M>| {
+        (s == fmi2StatusKind_fmi2LastSuccessfulTime).then(|| instance.last_successful_time())
+    };
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { get::<M, _>(c, "fmi2GetRealStatus", value, of) }
 }
 
 pub unsafe extern "C" fn fmi2GetBooleanStatus<M: Model>(
@@ -54,15 +47,11 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus<M: Model>(
     s: fmi2StatusKind,
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
-    guarded::<M>(c, "fmi2GetBooleanStatus", Call::GetStatus, |component| {
-        // SAFETY: the host points to a place for one value, or passes null.
-        let value = unsafe { place(value, "value") }?;
-        if s != fmi2StatusKind_fmi2Terminated {
-            return Err(no_such_status());
-        }
-        *value = component.instance.wants_to_terminate().into();
-        Ok(None)
-    })
+    let of = |instance: &Instance<M>| {
+        (s == fmi2StatusKind_fmi2Terminated).then(|| instance.wants_to_terminate().into())
+    };
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { get::<M, _>(c, "fmi2GetBooleanStatus", value, of) }
 }
 
 pub unsafe extern "C" fn fmi2GetIntegerStatus<M: Model>(
@@ -71,7 +60,7 @@ pub unsafe extern "C" fn fmi2GetIntegerStatus<M: Model>(
     value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: the arguments are the host's, as they came.
-    unsafe { get_no_status::<M, _>(c, "fmi2GetIntegerStatus", value) }
+    unsafe { get::<M, _>(c, "fmi2GetIntegerStatus", value, |_| None) }
 }
 
 pub unsafe extern "C" fn fmi2GetStringStatus<M: Model>(
@@ -80,19 +69,21 @@ pub unsafe extern "C" fn fmi2GetStringStatus<M: Model>(
     value: *mut fmi2String,
 ) -> fmi2Status {
     // SAFETY: the arguments are the host's, as they came.
-    unsafe { get_no_status::<M, _>(c, "fmi2GetStringStatus", value) }
+    unsafe { get::<M, _>(c, "fmi2GetStringStatus", value, |_| None) }
 }
 
-/// Gets a status of a type in which there is nothing to tell.
-unsafe fn get_no_status<M: Model, T>(
+/// Gets a status, where there is one of the type and kind that is asked for.
+unsafe fn get<M: Model, T>(
     c: fmi2Component,
     function: &str,
     value: *mut T,
+    of: impl Fn(&Instance<M>) -> Option<T>,
 ) -> fmi2Status {
-    guarded::<M>(c, function, Call::GetStatus, |_| {
+    guarded::<M>(c, function, Call::GetStatus, |component| {
         // SAFETY: the host points to a place for one value, or passes null.
-        unsafe { place(value, "value") }?;
-        Err(no_such_status())
+        let value = unsafe { place(value, "value") }?;
+        *value = of(&component.instance).ok_or_else(no_such_status)?;
+        Ok(None)
     })
 }
 
