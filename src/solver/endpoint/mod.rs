@@ -19,6 +19,7 @@ use super::{Equation, LocalEquation, State};
 mod before;
 mod length;
 mod matrix;
+mod mean_slope;
 mod plan;
 mod stages;
 mod table;
@@ -26,8 +27,9 @@ mod way;
 
 use before::Before;
 use length::{ORDER, Seen};
+use mean_slope::MeanSlope;
 use plan::{Plan, largest, pair, shifted, sine_and_cosine, unpair};
-use stages::{AVERAGED, Stages, averaged, solve, stays_between};
+use stages::{Stages, solve, stays_between};
 pub use way::{End, Way};
 
 /// The end of a step misses less than this part of the estimate below. Measured on driven motions of
@@ -73,9 +75,7 @@ pub struct EndpointSteps {
     /// How often the stages are iterated before it is looked whether that was enough.
     iterations: u32,
     seen: Seen,
-    /// ∂f/∂x of late, and over how many states it is averaged.
-    slope: f64,
-    states: f64,
+    slope: MeanSlope,
     #[serde(skip)]
     plan: Option<Box<Plan>>,
 }
@@ -90,8 +90,7 @@ impl EndpointSteps {
             before: None,
             iterations: FIRST_ITERATIONS,
             seen: Seen::NOTHING,
-            slope: 0.0,
-            states: 0.0,
+            slope: MeanSlope::UNKNOWN,
             plan: Some(Box::default()),
         }
     }
@@ -121,8 +120,7 @@ impl EndpointSteps {
             && self.length.is_none_or(positive)
             && (LEAST_ITERATIONS..=MOST_ITERATIONS).contains(&self.iterations)
             && self.seen.is_valid()
-            && self.slope.is_finite()
-            && (0.0..=AVERAGED).contains(&self.states)
+            && self.slope.is_valid()
     }
 
     /// Goes the way as far as it can.
@@ -315,15 +313,8 @@ impl EndpointSteps {
                 }
                 let load = local.load_with_sine(splat(0.0), splat(phase[0]));
                 let positions = shifted(displacement, state.position - moved);
-                (self.slope, self.states) = averaged(
-                    simd,
-                    &local,
-                    load,
-                    state.rate,
-                    positions,
-                    self.slope,
-                    self.states,
-                );
+                self.slope
+                    .include(simd, &local, load, state.rate, positions);
             } else if alternates {
                 phase = plan.turned(phase);
             }
@@ -365,7 +356,7 @@ impl EndpointSteps {
         count: f64,
     ) -> f64 {
         let of_this_length = self.half == half;
-        if self.states == 0.0 || self.before.is_none() || !of_this_length {
+        if self.slope.is_unknown() || self.before.is_none() || !of_this_length {
             let positions = match &self.before {
                 Some(before) => shifted(
                     pair(simd, &before.displacement),
@@ -373,17 +364,9 @@ impl EndpointSteps {
                 ),
                 None => [f64x4::splat(simd, state.position); 2],
             };
-            (self.slope, self.states) = averaged(
-                simd,
-                local,
-                load,
-                state.rate,
-                positions,
-                self.slope,
-                self.states,
-            );
+            self.slope.include(simd, local, load, state.rate, positions);
         }
-        let wanted = (half * half * self.slope).clamp(-STEEPEST, 0.0);
+        let wanted = (half * half * self.slope.value).clamp(-STEEPEST, 0.0);
         if (self.product - wanted).abs() < SLOPE_OFF {
             // Matrices that are there serve another length too, with a slope that fits it.
             self.product

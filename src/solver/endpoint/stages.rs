@@ -8,9 +8,6 @@ use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
 use crate::solver::{LocalEquation, State};
 
-/// States over which the slope of a plan is averaged.
-pub const AVERAGED: f64 = 16.0;
-
 /// The stages of a step, as far as they have been iterated.
 pub struct Stages<S: Simd> {
     /// g of the plan at the nodes.
@@ -95,41 +92,4 @@ pub fn stays_between<S: Simd>(
     let down = Lanes::<S, 4>::min(low, high).smallest().min(moved).min(0.0);
     let beyond = 0.25 * (up - down);
     position + down - beyond > lowest && position + up + beyond < highest
-}
-
-/// ∂f/∂x over the last states, these positions under this load too, and over how many.
-#[inline(always)]
-pub fn averaged<S: Simd, L: LocalEquation>(
-    simd: S,
-    local: &L,
-    load: L::Load<f64x4<S>>,
-    rate: f64,
-    positions: Pair<S>,
-    mean: f64,
-    states: f64,
-) -> (f64, f64) {
-    let [low, high] = positions;
-    let slope = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
-    let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
-    let states = (states + 1.0).min(AVERAGED);
-    let next = mean + (slope - mean) / states;
-    // The first one counts alone.
-    let next = if states == 1.0 { slope } else { next };
-    (if next.is_finite() { next } else { 0.0 }, states)
-}
-
-/// ∂f/∂x under this load at these positions; its last digits do not matter.
-#[inline(always)]
-fn slope<S: Simd, L: LocalEquation>(
-    simd: S,
-    local: &L,
-    load: L::Load<f64x4<S>>,
-    rate: f64,
-    position: f64x4<S>,
-) -> f64x4<S> {
-    let rate = f64x4::splat(simd, rate);
-    let shift = position * f64x4::splat(simd, 1e-4);
-    let above = local.acceleration(load, position + shift, rate);
-    let below = local.acceleration(load, position - shift, rate);
-    (above - below) / (shift + shift)
 }

@@ -16,7 +16,7 @@ use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
-use super::step_control::{Accepted, HALVED, SHORTEST, first_accepted};
+use super::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use super::{Equation, LocalEquation, State};
 
 mod substeps;
@@ -227,6 +227,16 @@ impl Trajectory {
         taken
     }
 
+    /// What a step may miss: less where its error is made again and again, by an orbit that repeats or by
+    /// restarts at every step.
+    fn step_control(&self, repeats: bool) -> StepControl {
+        if repeats || self.restarts_at_every_step {
+            self.control.repeated()
+        } else {
+            self.control
+        }
+    }
+
     /// The positions between which nothing happens.
     fn bounds(&self) -> (f64, f64) {
         let Limits { lower, upper } = self.limits;
@@ -255,11 +265,7 @@ impl Trajectory {
             bounds: self.bounds(),
             budget: *budget,
         };
-        let control = if self.restarts_at_every_step {
-            self.control.repeated()
-        } else {
-            self.control
-        };
+        let control = self.step_control(false);
         let steps = &mut self.method.endpoint;
         let end = steps.go(self.level, equation, control, &mut way);
         *budget = way.budget;
@@ -323,11 +329,7 @@ impl Trajectory {
         [repeats, only_end]: [bool; 2],
         most: f64,
     ) -> Result<Substep<PAIRS>, f64> {
-        let control = if repeats || self.restarts_at_every_step {
-            self.control.repeated()
-        } else {
-            self.control
-        };
+        let control = self.step_control(repeats);
         let scale = state.position.abs();
         let time_scale = local.time_scale(state);
         let free = match self.next_length {

@@ -1,0 +1,70 @@
+//! ∂f/∂x of late, from which a plan takes its slope.
+
+use fearless_simd::{Simd, SimdBase, f64x4};
+use serde::{Deserialize, Serialize};
+
+use super::plan::Pair;
+use crate::solver::LocalEquation;
+use crate::solver::lanes::Lanes;
+
+/// States over which it is averaged.
+const AVERAGED: f64 = 16.0;
+
+/// ∂f/∂x over the last states, and over how many.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct MeanSlope {
+    pub value: f64,
+    states: f64,
+}
+
+impl MeanSlope {
+    /// Of no state yet.
+    pub const UNKNOWN: MeanSlope = MeanSlope {
+        value: 0.0,
+        states: 0.0,
+    };
+
+    pub fn is_unknown(&self) -> bool {
+        self.states == 0.0
+    }
+
+    /// Whether the numbers can be those of states.
+    pub fn is_valid(&self) -> bool {
+        self.value.is_finite() && (0.0..=AVERAGED).contains(&self.states)
+    }
+
+    /// Takes these positions under this load too.
+    #[inline(always)]
+    pub fn include<S: Simd, L: LocalEquation>(
+        &mut self,
+        simd: S,
+        local: &L,
+        load: L::Load<f64x4<S>>,
+        rate: f64,
+        [low, high]: Pair<S>,
+    ) {
+        let slope = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
+        let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
+        self.states = (self.states + 1.0).min(AVERAGED);
+        let next = self.value + (slope - self.value) / self.states;
+        // The first one counts alone.
+        let next = if self.states == 1.0 { slope } else { next };
+        self.value = if next.is_finite() { next } else { 0.0 };
+    }
+}
+
+/// ∂f/∂x under this load at these positions; its last digits do not matter.
+#[inline(always)]
+fn slope<S: Simd, L: LocalEquation>(
+    simd: S,
+    local: &L,
+    load: L::Load<f64x4<S>>,
+    rate: f64,
+    position: f64x4<S>,
+) -> f64x4<S> {
+    let rate = f64x4::splat(simd, rate);
+    let shift = position * f64x4::splat(simd, 1e-4);
+    let above = local.acceleration(load, position + shift, rate);
+    let below = local.acceleration(load, position - shift, rate);
+    (above - below) / (shift + shift)
+}
