@@ -1,5 +1,6 @@
-"""What the tests of the platforms share: the packed FMU, a host for each platform, and what runs it here."""
+"""What the tests of the platforms share: the packed FMUs, a host for each platform, and what runs it here."""
 
+import functools
 import os
 import platform
 import shlex
@@ -16,8 +17,8 @@ import pytest
 import debian
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-MODEL = "DielectricElastomerActuator"
-FMU = REPOSITORY / "target" / "fmu" / f"{MODEL}.fmu"
+FMUS = REPOSITORY / "target" / "fmu"
+MODELS = ("DielectricElastomerActuator", "DielectricElastomerActuatorSI")
 ZIG = shlex.split(os.environ.get("ZIG", f"{shlex.quote(sys.executable)} -m ziglang"))
 
 
@@ -92,43 +93,40 @@ PLATFORMS = {
 """Target of zig, file name extension of a library, and what finds the runner."""
 
 
-@pytest.fixture(scope="session")
-def fmu() -> zipfile.ZipFile:
+def packed(model: str) -> Path:
     """The packed FMU; a test that needs it fails where there is none."""
-    if not FMU.is_file():
-        pytest.fail(f"no FMU at {FMU}: build and pack it first (make fmu-all)", pytrace=False)
-    with zipfile.ZipFile(FMU) as archive:
-        yield archive
+    path = FMUS / f"{model}.fmu"
+    if not path.is_file():
+        pytest.fail(f"no FMU at {path}: build and pack it first (make fmu-all)", pytrace=False)
+    return path
 
 
 @pytest.fixture(scope="session")
-def description():
-    """FMPy's reading of the model description."""
-    return fmpy.read_model_description(str(FMU))
+def simulate(tmp_path_factory):
+    """A function that runs a scene of a model on a platform and gives the bits of what it reads, a row a step."""
 
+    @functools.cache
+    def described(model: str):
+        return fmpy.read_model_description(str(packed(model)))
 
-@pytest.fixture(scope="session")
-def simulate(fmu, description, tmp_path_factory):
-    """A function that runs a scene on a platform and gives the bits of what it reads, a row a step."""
-    reference_of = {variable.name: variable.valueReference for variable in description.modelVariables}
-    ready = {}
-
-    def prepare(name: str):
+    @functools.cache
+    def prepared(model: str, name: str):
         target, extension, runner = PLATFORMS[name]
-        path = f"binaries/{name}/{MODEL}.{extension}"
-        if path not in fmu.namelist():
-            pytest.skip(f"the FMU has no binary for {name}; make fmu-all says why")
+        path = f"binaries/{name}/{model}.{extension}"
         folder = tmp_path_factory.mktemp(name)
-        library = Path(fmu.extract(path, folder))
+        with zipfile.ZipFile(packed(model)) as archive:
+            if path not in archive.namelist():
+                pytest.skip(f"the FMU has no binary for {name}; make fmu-all says why")
+            library = Path(archive.extract(path, folder))
         host = folder / ("host.exe" if extension == "dll" else "host")
         source = Path(__file__).with_name("host.c")
         subprocess.run([*ZIG, "cc", "-target", target, "-O2", "-Wall", "-Werror", "-o", host, source], check=True)
         return runner(), host, library
 
-    def run(name: str, scene: dict, outputs: tuple, *, step: float, steps: int, tolerance: float):
-        if name not in ready:
-            ready[name] = prepare(name)
-        runner, host, library = ready[name]
+    def run(model: str, name: str, scene: dict, outputs: tuple, *, step: float, steps: int, tolerance: float):
+        runner, host, library = prepared(model, name)
+        description = described(model)
+        reference_of = {variable.name: variable.valueReference for variable in description.modelVariables}
         settings = [f"{reference_of[variable]}={value!r}" for variable, value in scene.items()]
         reads = [reference_of[variable] for variable in outputs]
         # A path that is relative to the drive is one for Windows too.
