@@ -20,7 +20,7 @@ use fearless_simd::{Level, Simd, dispatch, f64x8};
 use super::iteration::{Diverged, IterationTolerance};
 use super::lanes::Lanes;
 use super::number::Number;
-use super::tables::{Columns, GAUSS_16, Tables};
+use super::tables::{Columns, PAIRED_16, Pairs};
 use super::{LocalEquation, State};
 
 /// The end of a step misses less than this part of the estimate: 16 to 26 000 times less on an AC motion near
@@ -151,13 +151,13 @@ pub fn solve_by_16<L: LocalEquation>(
     equation: &L,
     task: &Task<8>,
 ) -> Result<Substep<8>, Diverged> {
-    dispatch!(level, simd => solve::<_, f64x8<_>, L, 8>(simd, &GAUSS_16, equation, task))
+    dispatch!(level, simd => solve::<_, f64x8<_>, L, 8>(simd, &PAIRED_16, equation, task))
 }
 
 #[inline(always)]
 fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     simd: S,
-    tables: &Tables<P>,
+    tables: &Pairs<P>,
     equation: &L,
     task: &Task<P>,
 ) -> Result<Substep<P>, Diverged> {

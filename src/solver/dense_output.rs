@@ -9,7 +9,7 @@ use super::collocation::Series;
 use super::double_double::DoubleDouble;
 use super::position_origin::PositionOrigin;
 use super::roots::crossing;
-use super::tables::{Columns, GAUSS_16};
+use super::tables::{Columns, PAIRED_16};
 
 /// Node pairs of the method whose segments are kept.
 pub const PAIRS: usize = 8;
@@ -129,8 +129,8 @@ impl Segment {
         if self.expanded {
             return;
         }
-        let even = product(&GAUSS_16.powers_from_even, &self.even);
-        let odd = product(&GAUSS_16.powers_from_odd, &self.odd);
+        let even = product(&PAIRED_16.powers_from_even, &self.even);
+        let odd = product(&PAIRED_16.powers_from_odd, &self.odd);
         for i in 0..PAIRS {
             self.power[2 * i + 2] = even[i];
             self.power[2 * i + 3] = odd[i];
@@ -207,8 +207,9 @@ impl Segment {
     }
 }
 
-fn product(columns: &Columns<PAIRS>, values: &[f64; PAIRS]) -> SVector<f64, PAIRS> {
-    SMatrixView::<f64, PAIRS, PAIRS>::from_slice(columns.as_flattened()) * SVector::from(*values)
+/// The product of a table with the values at the nodes.
+pub(super) fn product<const N: usize>(columns: &Columns<N>, values: &[f64; N]) -> SVector<f64, N> {
+    SMatrixView::<f64, N, N>::from_slice(columns.as_flattened()) * SVector::from(*values)
 }
 
 /// Steps kept to find an orbit; an orbit near a saddle takes about 20.

@@ -11,7 +11,7 @@ use nalgebra::{Const, LU, SMatrix, SVector};
 
 use super::State;
 use super::collocation::Series;
-use super::dense_output::{PAIRS, Segment};
+use super::dense_output::{PAIRS, Segment, product};
 use super::tables::GAUSS_16;
 
 /// Number of stages.
@@ -20,17 +20,10 @@ pub const NODES: usize = 2 * PAIRS;
 /// A number at each stage.
 pub type Stages = SVector<f64, NODES>;
 
-type Matrix = SMatrix<f64, NODES, NODES>;
-
-/// Row or column `index` belongs to the node `node[index % PAIRS]` with this sign.
-const fn sign(index: usize) -> f64 {
-    if index < PAIRS { 1.0 } else { -1.0 }
-}
-
 /// The times of the stages, counted from the begin of a substep of this length.
 #[must_use]
 pub fn offsets(length: f64) -> [f64; NODES] {
-    std::array::from_fn(|i| 0.5 * length * (1.0 + sign(i) * GAUSS_16.node[i % PAIRS]))
+    GAUSS_16.place.map(|place| 0.5 * length * place)
 }
 
 /// The linear equation over one substep, ready to be solved for any start and any g.
@@ -46,15 +39,8 @@ impl Linearized {
     #[must_use]
     pub fn new(length: f64, by_position: Stages, by_rate: Stages) -> Linearized {
         let half = 0.5 * length;
-        let system = Matrix::from_fn(|row, column| {
-            let (i, j) = (row % PAIRS, column % PAIRS);
-            let once = GAUSS_16.mean[j]
-                + sign(row) * GAUSS_16.once_from_sums[j][i]
-                + sign(column) * GAUSS_16.once_from_differences[j][i];
-            let twice = GAUSS_16.twice_from_sums[j][i]
-                + sign(row) * GAUSS_16.node[i] * GAUSS_16.mean[j]
-                + sign(column)
-                    * (sign(row) * GAUSS_16.twice_from_differences[j][i] - GAUSS_16.tilt[j]);
+        let system = SMatrix::<f64, NODES, NODES>::from_fn(|row, column| {
+            let [once, twice] = [GAUSS_16.once[column][row], GAUSS_16.twice[column][row]];
             let identity = if row == column { 1.0 } else { 0.0 };
             identity - half * (half * by_position[row] * twice + by_rate[row] * once)
         });
@@ -77,17 +63,8 @@ impl Linearized {
         });
         let f = self.system.solve(&free)?;
         let square = self.half * self.half;
-        let (mut mean, mut tilt) = (0.0, 0.0);
-        let (mut even, mut odd) = ([0.0; PAIRS], [0.0; PAIRS]);
-        for j in 0..PAIRS {
-            let (sum, difference) = (f[j] + f[j + PAIRS], f[j] - f[j + PAIRS]);
-            mean += GAUSS_16.mean[j] * sum;
-            tilt += GAUSS_16.tilt[j] * difference;
-            for k in 0..PAIRS {
-                even[k] += square * GAUSS_16.series_from_sums[j][k] * sum;
-                odd[k] += square * GAUSS_16.series_from_differences[j][k] * difference;
-            }
-        }
+        let series = product(&GAUSS_16.series, &f.into());
+        let [mean, tilt] = [series[0], series[1] / 3.0];
         let length = 2.0 * self.half;
         let end = State {
             position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
@@ -95,8 +72,8 @@ impl Linearized {
         };
         let series = Series {
             half: self.half,
-            even,
-            odd,
+            even: std::array::from_fn(|k| square * series[2 * k]),
+            odd: std::array::from_fn(|k| square * series[2 * k + 1]),
         };
         Some(Segment::new(start, end, &series))
     }

@@ -10,7 +10,7 @@
 //! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;
 //! * [`dense_output`]: the polynomials that steps leave behind;
 //! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
-//! * [`linearized`]: the motion beside a motion;
+//! * [`linearized`]: the motion beside a motion; `tables`: nodes and weights of all methods;
 //! * [`roots`]: zeros and minima; [`sine`]: that of lanes;
 //! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives.
 

@@ -1,7 +1,6 @@
 //! The integrator of one second-order equation x'' = f(t, x, x', z) and a few of first order,
 //! z' = g(t, x, x', z), with dissipation, stiff or not.
 //!
-//! * `rule`: nodes and weights, Gauss and Radau IIA;
 //! * [`stages`]: one step of collocation;
 //! * `stage_values`: one state over the nodes of a step;
 //! * `polynomials`: first-order states and integrals over a step;
@@ -17,7 +16,6 @@
 mod newton;
 mod polynomials;
 mod row;
-mod rule;
 mod stage_values;
 pub mod stages;
 pub mod trajectory;

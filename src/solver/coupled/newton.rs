@@ -14,9 +14,9 @@
 use fearless_simd::Simd;
 
 use super::row::Row;
-use super::rule::{Columns, Rule};
 use super::{LocalCoupledEquation, MOST_STATES, Sizes, Stage};
 use crate::solver::iteration::Diverged;
+use crate::solver::tables::{Columns, Rule};
 
 /// By which part of its size a variable is changed to see what it acts on.
 const DIFFERENCE: f64 = 1e-7;

@@ -7,9 +7,9 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use fearless_simd::{Simd, f64x8};
 
-use super::rule::Columns;
 use crate::solver::lanes::Lanes;
 use crate::solver::number::Number;
+use crate::solver::tables::Columns;
 
 /// Nodes in a register.
 const LANES: usize = 8;

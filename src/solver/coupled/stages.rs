@@ -16,11 +16,11 @@ use fearless_simd::{Level, Simd, dispatch};
 use super::newton::Newton;
 use super::polynomials::{Coefficients, TERMS};
 use super::row::Row;
-use super::rule::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
 use super::stage_values::{StageValues, series};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
 use crate::solver::iteration::{Diverged, IterationTolerance};
+use crate::solver::tables::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
 
 /// Matrices that let an iteration shrink its change by less than this factor are made anew.
 const REFRESHED: f64 = 0.4;

@@ -2,7 +2,7 @@
 //! compiler (see [`crate::solver::tables`]).
 
 use crate::solver::double_double::DoubleDouble;
-use crate::solver::tables::{MOST_NODES, gauss_node, gauss_weight, legendre, sum_once, sum_twice};
+use crate::solver::tables::{Exact, dot, legendre};
 
 /// Numbers at the nodes, in two registers.
 pub type Eight = [[f64; 4]; 2];
@@ -54,11 +54,13 @@ pub struct Dense {
 }
 
 /// The table of the method.
-pub static TABLE: Dense = Dense::new();
+pub static TABLE: Dense = Dense::new(&Exact::gauss());
 
 impl Dense {
-    const fn new() -> Dense {
+    const fn new(exact: &Exact<8>) -> Dense {
         const N: usize = 8;
+        /// The nodes in the order of the table, of those that increase.
+        const PLACE: [usize; N] = [4, 5, 6, 7, 3, 2, 1, 0];
         let mut dense = Dense {
             place: [0.0; N],
             plain: Matrices {
@@ -70,57 +72,34 @@ impl Dense {
             last: [0.0; N],
             series: [[0.0; N]; N],
         };
-        let mut node = [DoubleDouble::ZERO; N];
-        let mut i = 0;
-        while i < N / 2 {
-            node[i] = gauss_node(i, N);
-            node[i + N / 2] = DoubleDouble::ZERO.sub(node[i]);
-            i += 1;
-        }
+        // Legendre polynomials are 1 at the end.
+        let at_end = [DoubleDouble::ONE; N];
         let mut j = 0;
         while j < N {
-            let p = legendre(node[j]);
-            let weight = gauss_weight(node[j], &p, N);
-            let mut share = [DoubleDouble::ZERO; MOST_NODES];
-            let mut last = DoubleDouble::ZERO;
+            let series = &exact.series[PLACE[j]];
             let mut k = 0;
             while k < N {
-                share[k] = weight.mul(p[k]).scale(0.5 * (2 * k + 1) as f64);
-                dense.series[j][k] = share[k].value();
-                // Legendre polynomials are 1 there.
-                last = last.add(share[k]);
+                dense.series[j][k] = series[k].value();
                 k += 1;
             }
-            dense.last[j] = last.value();
-            dense.place[j] = DoubleDouble::ONE.add(node[j]).value();
+            dense.last[j] = dot(series, &at_end).value();
+            dense.place[j] = DoubleDouble::ONE.add(exact.node[PLACE[j]]).value();
             dense.plain.drift[j] = dense.place[j];
-            let tilt = share[1].div(DoubleDouble::new(3.0));
+            let tilt = series[1].div(DoubleDouble::new(3.0));
             dense.plain.end[j] = [
-                share[0].sub(tilt).scale(2.0).value(),
-                share[0].scale(2.0).value(),
-                share[N - 2].value(),
-                share[N - 1].value(),
+                series[0].sub(tilt).scale(2.0).value(),
+                series[0].scale(2.0).value(),
+                series[N - 2].value(),
+                series[N - 1].value(),
             ];
             let mut i = 0;
             while i < N {
-                let p = legendre(node[i]);
-                let next = legendre(node[i].add(DoubleDouble::new(2.0)));
-                let (mut once, mut twice, mut ahead) =
-                    (share[0], DoubleDouble::ZERO.sub(tilt), DoubleDouble::ZERO);
-                // The parts that `once` and `twice` leave out.
-                twice = twice.add(share[0].mul(node[i]));
-                once = once.add(sum_once(&share, &p, 0));
-                once = once.add(sum_once(&share, &p, 1));
-                twice = twice.add(sum_twice(&share, &p, 0));
-                twice = twice.add(sum_twice(&share, &p, 1));
-                let mut k = 0;
-                while k < N {
-                    ahead = ahead.add(share[k].mul(next[k]));
-                    k += 1;
-                }
-                dense.plain.once[i ^ j][i / 4][i % 4] = once.value();
-                dense.plain.twice[i ^ j][i / 4][i % 4] = twice.value();
-                dense.ahead[i ^ j][i / 4][i % 4] = ahead.value();
+                let next = legendre(exact.node[PLACE[i]].add(DoubleDouble::new(2.0)));
+                let [column, row] = [PLACE[j], PLACE[i]];
+                let [x, register, lane] = [i ^ j, i / 4, i % 4];
+                dense.plain.once[x][register][lane] = exact.once[column][row].value();
+                dense.plain.twice[x][register][lane] = exact.twice[column][row].value();
+                dense.ahead[x][register][lane] = dot(series, &next).value();
                 i += 1;
             }
             j += 1;
@@ -132,44 +111,46 @@ impl Dense {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::tables::GAUSS_8;
 
-    /// Powers of u, each integrated, continued and expanded as it should be.
+    /// Against the nodes that increase; the continuation against powers.
     #[test]
-    fn the_table_integrates_polynomials() {
+    fn the_diagonals_are_the_matrices_of_the_nodes_in_another_order() {
+        let node = TABLE.place.map(|place| place - 1.0);
+        let at = TABLE.place.map(|place| {
+            let same = |other: &f64| *other == place;
+            GAUSS_8.place.iter().position(same).expect("a node")
+        });
+        let entry = |matrix: &Diagonals, i: usize, j: usize| matrix[i ^ j][i / 4][i % 4];
+        for (i, j) in (0..8).flat_map(|i| (0..8).map(move |j| (i, j))) {
+            assert_eq!(entry(&TABLE.plain.once, i, j), GAUSS_8.once[at[j]][at[i]]);
+            assert_eq!(entry(&TABLE.plain.twice, i, j), GAUSS_8.twice[at[j]][at[i]]);
+            assert_eq!(TABLE.series[j][i], GAUSS_8.series[at[j]][i]);
+        }
         for n in 0..8_i32 {
-            let node = TABLE.place.map(|place| place - 1.0);
             let values = node.map(|u| u.powi(n));
-            let apply = |matrix: &Diagonals, i: usize| -> f64 {
-                (0..8)
-                    .map(|x| matrix[x][i / 4][i % 4] * values[i ^ x])
-                    .sum()
+            let sum = |weight: &dyn Fn(usize) -> f64| -> f64 {
+                (0..8).map(|j| weight(j) * values[j]).sum()
             };
-            let begin = (-1.0_f64).powi(n + 1);
-            let [order, next] = [f64::from(n + 1), f64::from(n + 2)];
-            let once = |u: f64| (u.powi(n + 1) - begin) / order;
-            let twice =
-                |u: f64| (u.powi(n + 2) + begin) / (order * next) - begin * (1.0 + u) / order;
             for (i, u) in node.into_iter().enumerate() {
-                let matrices = &TABLE.plain;
-                assert!((apply(&matrices.once, i) - once(u)).abs() < 2e-15, "u^{n}");
-                assert!(
-                    (apply(&matrices.twice, i) - twice(u)).abs() < 2e-15,
-                    "u^{n}"
-                );
-                let ahead = apply(&TABLE.ahead, i);
-                assert!((ahead - (u + 2.0).powi(n)).abs() < 1e-9, "u^{n}: {ahead}");
+                let ahead = sum(&|j| entry(&TABLE.ahead, i, j));
+                assert!((ahead - (u + 2.0).powi(n)).abs() < 1e-9, "u^{n}");
             }
-            let column =
-                |row: usize| -> f64 { (0..8).map(|j| TABLE.plain.end[j][row] * values[j]).sum() };
-            assert!((column(0) - twice(1.0)).abs() < 2e-15, "u^{n}");
-            assert!((column(1) - once(1.0)).abs() < 2e-15, "u^{n}");
-            let last: f64 = (0..8).map(|j| TABLE.last[j] * values[j]).sum();
-            assert!((last - 1.0).abs() < 4e-15, "u^{n}: {last}");
-            // P_0 to P_7 are all 1 at u = 1.
-            let sum: f64 = (0..8)
-                .map(|k| -> f64 { (0..8).map(|j| TABLE.series[j][k] * values[j]).sum() })
-                .sum();
-            assert!((sum - 1.0).abs() < 4e-15, "u^{n}: {sum}");
+            // ∫∫uⁿ and ∫uⁿ from −1 to 1, uⁿ at 1.
+            let mean = if n % 2 == 0 {
+                1.0 / f64::from(n + 1)
+            } else {
+                0.0
+            };
+            let tilt = if n % 2 == 0 {
+                0.0
+            } else {
+                1.0 / f64::from(n + 2)
+            };
+            let displacement = sum(&|j| TABLE.plain.end[j][0]);
+            assert!((displacement - 2.0 * (mean - tilt)).abs() < 2e-15, "u^{n}");
+            assert!((sum(&|j| TABLE.plain.end[j][1]) - 2.0 * mean).abs() < 2e-15);
+            assert!((sum(&|j| TABLE.last[j]) - 1.0).abs() < 4e-15, "u^{n}");
         }
     }
 }
