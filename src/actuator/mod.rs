@@ -17,7 +17,6 @@ pub mod ensemble;
 mod harmonic;
 pub mod motion;
 pub mod parameters;
-mod polynomial;
 pub mod scales;
 
 pub use coefficients::Coefficients;

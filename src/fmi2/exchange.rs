@@ -3,7 +3,7 @@
 use fmi::fmi2::binding::*;
 
 use super::calls::Call;
-use super::guard::{guarded, place, slice, slice_mut};
+use super::{guarded, place, slice, slice_mut};
 use crate::instance::{Fault, Instance};
 use crate::model::Model;
 

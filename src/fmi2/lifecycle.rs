@@ -6,8 +6,8 @@ use fmi::fmi2::binding::*;
 use libc::c_char;
 
 use super::calls::Call;
-use super::guard::{Component, free, guarded, instantiated, slice, text};
 use super::host::Host;
+use super::{Component, computing, contained, guarded, null, slice};
 use crate::instance::{Fault, Instance, Interface};
 use crate::model::Model;
 
@@ -153,4 +153,116 @@ pub unsafe extern "C" fn fmi2Reset<M: Model>(c: fmi2Component) -> fmi2Status {
         component.instance.reset();
         Ok(None)
     })
+}
+
+/// The component of an instance that `make` makes, or null: the one way into an
+/// instance's life. No panic leaves it.
+fn instantiated<M: Model>(
+    host: Host,
+    make: impl FnOnce() -> Result<Instance<M>, Fault>,
+) -> fmi2Component {
+    match contained(|| computing(make)) {
+        Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
+        Err(fault) => {
+            host.refuse("fmi2Instantiate", fault);
+            std::ptr::null_mut()
+        }
+    }
+}
+
+/// Frees what a host has had, and the way out. No panic leaves it.
+fn free<T>(owned: Box<T>) {
+    // Nobody is left who could be told.
+    let _ = contained(|| {
+        drop(owned);
+        Ok(())
+    });
+}
+
+/// A text.
+///
+/// # Safety
+/// `text` must be null or point to characters that end with NUL and live
+/// during the call.
+unsafe fn text<'a>(text: *const c_char, what: &str) -> Result<&'a CStr, Fault> {
+    if text.is_null() {
+        return Err(null(what));
+    }
+    // SAFETY: not null, and characters that end with NUL, as the caller promises.
+    Ok(unsafe { CStr::from_ptr(text) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fmi2::*;
+    use crate::instance::Interface;
+    use crate::instance::Severity;
+    use crate::nondimensional::Nondimensional;
+
+    fn host() -> Host {
+        let callbacks = fmi2CallbackFunctions {
+            logger: None,
+            allocateMemory: None,
+            freeMemory: None,
+            stepFinished: None,
+            componentEnvironment: std::ptr::null_mut(),
+        };
+        Host::new(callbacks, c"actuator", true)
+    }
+
+    /// A call that panics is answered with Fatal, and so is every call after it;
+    /// the instance can still be freed.
+    #[test]
+    fn a_panic_does_not_leave_the_library() {
+        let component = instantiated(host(), || {
+            Ok(Instance::<Nondimensional>::of(Interface::CoSimulation))
+        });
+        let status = guarded::<Nondimensional>(
+            component,
+            "fmi2SetupExperiment",
+            Call::SetupExperiment,
+            |_| panic!("what the test asks for"),
+        );
+        assert_eq!(status, fmi2Status_fmi2Fatal);
+        let mut state = std::ptr::null_mut();
+        // SAFETY: a live component, and arrays as long as they are said to be.
+        unsafe {
+            for status in [
+                fmi2GetReal::<Nondimensional>(component, &0, 1, &mut 0.0),
+                fmi2SetReal::<Nondimensional>(component, &0, 1, &0.1),
+                fmi2EnterInitializationMode::<Nondimensional>(component),
+                fmi2DoStep::<Nondimensional>(component, 0.0, 0.1, 1),
+                fmi2GetFMUstate::<Nondimensional>(component, &mut state),
+                fmi2Terminate::<Nondimensional>(component),
+                fmi2Reset::<Nondimensional>(component),
+            ] {
+                assert_eq!(status, fmi2Status_fmi2Fatal);
+            }
+            fmi2FreeInstance::<Nondimensional>(component);
+        }
+        assert!(state.is_null());
+    }
+
+    /// What panics while it is made is a fatal fault, and no component.
+    #[test]
+    fn a_panic_in_making_an_instance_leaves_none() {
+        let panics =
+            || -> Result<Instance<Nondimensional>, Fault> { panic!("what the test asks for") };
+        let fault = contained(panics).expect_err("a panic");
+        assert_eq!(fault.severity, Severity::Fatal);
+        assert!(fault.text.contains("internal error"), "{}", fault.text);
+        assert!(instantiated(host(), panics).is_null());
+    }
+
+    #[test]
+    fn a_panic_in_freeing_goes_no_further() {
+        struct Stubborn;
+        impl Drop for Stubborn {
+            fn drop(&mut self) {
+                panic!("what the test asks for");
+            }
+        }
+        free(Box::new(Stubborn));
+    }
 }

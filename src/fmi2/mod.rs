@@ -1,9 +1,10 @@
 //! The C functions of FMI 2.0 (`fmi2Functions.h`): the only room with unsafe
 //! code. Each function turns pointers into slices and delegates to one method
-//! of the instance, inside the guard of `guard`.
+//! of the instance, inside the guard.
 //!
-//! In this file: what a simulation calls from step to step. What begins and ends it is in
-//! `lifecycle`, what is asked about a step in `status`.
+//! In this file: the guard, the host's pointers, and what a simulation calls from step to step:
+//! `fmi2SetReal`, `fmi2DoStep`, `fmi2GetReal`. The other functions stand in `variables`,
+//! `lifecycle`, `exchange`, `status` and `state`.
 //!
 //! Safety of all of them: the host owes what the standard says, that is,
 //! components from `fmi2Instantiate` that have not been freed and are used by
@@ -24,24 +25,28 @@ mod calls;
 mod envelope;
 mod exchange;
 pub mod float_environment;
-mod guard;
 mod host;
 mod lifecycle;
 mod signatures;
 mod state;
 mod status;
+mod variables;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use fmi::fmi2::binding::*;
 
-use crate::instance::{Instance, Type};
+use crate::instance::{Event, Fault, Instance, Severity, Type};
 use crate::model::Model;
 use calls::Call;
 pub use exchange::*;
-use guard::{done_at_once, guarded, guarded_in_place, readable, slice, slice_mut, writable};
+use float_environment::FloatEnvironment;
+use host::Host;
 pub use lifecycle::*;
 pub use signatures::EXPORTED_NAMES;
 pub use state::*;
 pub use status::*;
+pub use variables::*;
 
 /// The C types of the standard, for the crates that export its functions.
 pub mod c {
@@ -49,7 +54,237 @@ pub mod c {
     pub use libc::c_char;
 }
 
-// ---- Get variables ----
+// ---- The guard ----
+
+/// What stands behind an `fmi2Component`: an instance with its host.
+struct Component<M: Model> {
+    instance: Instance<M>,
+    host: Host,
+}
+
+/// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
+#[inline(always)]
+fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
+        Err(Fault {
+            severity: Severity::Fatal,
+            text: "an internal error; free this instance, if there is one, and report the fault"
+                .into(),
+        })
+    })
+}
+
+/// Runs `body` in the default floating-point environment, the host's put back after it.
+#[inline(always)]
+fn computing<T>(body: impl FnOnce() -> T) -> T {
+    let _environment = FloatEnvironment::entered();
+    body()
+}
+
+/// Runs `body` on the component behind the pointer, if the phase permits the call: the way from C
+/// into the instance. No panic leaves it.
+#[inline(always)]
+fn guarded<M: Model>(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
+    mut body: impl FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>,
+) -> fmi2Status {
+    guarded_call(component, function, call, &mut body)
+}
+
+/// What a call does, as one type for all calls.
+type Body<'a, M> = &'a mut dyn FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>;
+
+/// [`guarded`] for all calls of a model: once in the binary.
+#[inline(never)]
+fn guarded_call<M: Model>(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
+    body: Body<M>,
+) -> fmi2Status {
+    guarded_in_place(component, function, call, body)
+}
+
+/// [`guarded`], the guard being compiled into the caller: for calls that must be fast.
+#[inline(always)]
+fn guarded_in_place<M: Model>(
+    component: fmi2Component,
+    function: &str,
+    call: Call,
+    body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
+) -> fmi2Status {
+    // SAFETY: the pointer is the host's, as it came: null, or from `fmi2Instantiate`.
+    let Some(component) = (unsafe { behind::<M>(component) }) else {
+        return fmi2Status_fmi2Error;
+    };
+    if let Err(fault) = call.check(&component.instance) {
+        return component.host.refuse(function, fault);
+    }
+    match contained(|| computing(|| body(component))) {
+        Ok(None) => fmi2Status_fmi2OK,
+        Ok(Some(event)) => component.host.announce(function, event),
+        Err(fault) => {
+            if fault.severity == Severity::Fatal {
+                component.instance.give_up();
+            }
+            component.host.refuse(function, fault)
+        }
+    }
+}
+
+/// Does a call without any arithmetic, where `at_once` can: it compares and copies only, and
+/// cannot panic. It runs in the host's floating-point environment, which costs more to find out
+/// than such a call takes. Returns whether the call is done; if not, nothing has changed.
+#[inline(always)]
+fn done_at_once<M: Model>(
+    component: fmi2Component,
+    call: Call,
+    at_once: impl FnOnce(&mut Instance<M>) -> bool,
+) -> bool {
+    // SAFETY: the pointer is the host's, as it came: null, or from `fmi2Instantiate`.
+    match unsafe { behind::<M>(component) } {
+        Some(component) => {
+            call.is_permitted(&component.instance) && at_once(&mut component.instance)
+        }
+        None => false,
+    }
+}
+
+/// The component behind a pointer, if it is not null.
+///
+/// # Safety
+/// One that is not null comes from `fmi2Instantiate`, was not freed, and is used by one call at
+/// a time: the host owes it to us (FMI 2.0, sections 2.1.6 and 2.1.7).
+unsafe fn behind<'a, M: Model>(component: fmi2Component) -> Option<&'a mut Component<M>> {
+    // SAFETY: null, or a live component that no other call uses, as the caller promises.
+    unsafe { component.cast::<Component<M>>().as_mut() }
+}
+
+// ---- The host's pointers; a null one is a fault ----
+
+#[cold]
+fn null(what: &str) -> Fault {
+    Fault::error(format!("{what} is a null pointer"))
+}
+
+/// `count` values to read; nothing for a null pointer.
+///
+/// # Safety
+/// `values` must be null or point to `count` values that live during the call.
+#[inline]
+unsafe fn readable<'a, T>(values: *const T, count: usize) -> Option<&'a [T]> {
+    match (count, values.is_null()) {
+        (0, _) => Some(&[]),
+        (_, true) => None,
+        // SAFETY: not null, and `count` values that live during the call, as the caller promises.
+        _ => Some(unsafe { std::slice::from_raw_parts(values, count) }),
+    }
+}
+
+/// `count` values to write; nothing for a null pointer.
+///
+/// # Safety
+/// `values` must be null or point to `count` values that live during the call
+/// and that nobody else uses.
+#[inline]
+unsafe fn writable<'a, T>(values: *mut T, count: usize) -> Option<&'a mut [T]> {
+    match (count, values.is_null()) {
+        (0, _) => Some(&mut []),
+        (_, true) => None,
+        // SAFETY: not null, and `count` values that live during the call, as the caller promises.
+        _ => Some(unsafe { std::slice::from_raw_parts_mut(values, count) }),
+    }
+}
+
+/// `count` values to read; a null pointer is a fault.
+///
+/// # Safety
+/// As for [`readable`].
+unsafe fn slice<'a, T>(values: *const T, count: usize, what: &str) -> Result<&'a [T], Fault> {
+    // SAFETY: null, or `count` values that live during the call, as the caller promises.
+    unsafe { readable(values, count) }.ok_or_else(|| null(what))
+}
+
+/// `count` values to write; a null pointer is a fault.
+///
+/// # Safety
+/// As for [`writable`].
+unsafe fn slice_mut<'a, T>(values: *mut T, count: usize, what: &str) -> Result<&'a mut [T], Fault> {
+    // SAFETY: null, or `count` values that nobody else uses, as the caller promises.
+    unsafe { writable(values, count) }.ok_or_else(|| null(what))
+}
+
+/// One value to write.
+///
+/// # Safety
+/// As for [`writable`] with one value.
+unsafe fn place<'a, T>(value: *mut T, what: &str) -> Result<&'a mut T, Fault> {
+    // SAFETY: null, or one value that nobody else uses, as the caller promises.
+    unsafe { value.as_mut() }.ok_or_else(|| null(what))
+}
+
+// ---- From step to step ----
+
+pub unsafe extern "C" fn fmi2SetReal<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    let at_once = |instance: &mut Instance<M>| {
+        // SAFETY: the host's arrays hold `nvr` values each, or are null.
+        match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
+            (Some(&[reference]), Some(&[value])) => instance.set_held(reference, value),
+            (Some(references), Some(values)) => instance.set_all_held(references, values),
+            _ => false,
+        }
+    };
+    if done_at_once::<M>(c, Call::Set, at_once) {
+        return fmi2Status_fmi2OK;
+    }
+    // Where an input does not keep its value, or is none.
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe {
+        set::<M, _>(c, "fmi2SetReal", Type::Real, (vr, value, nvr), |value| {
+            value
+        })
+    }
+}
+
+/// Sets variables of one type; `convert` makes our values of its.
+unsafe fn set<M: Model, T: Copy>(
+    c: fmi2Component,
+    function: &str,
+    of: Type,
+    (vr, value, nvr): (*const fmi2ValueReference, *const T, usize),
+    convert: fn(T) -> f64,
+) -> fmi2Status {
+    guarded::<M>(c, function, Call::Set, |component| {
+        // SAFETY: the host's array holds `nvr` value references, or is null.
+        let references = unsafe { slice(vr, nvr, "vr") }?;
+        // SAFETY: the host's array holds `nvr` values, or is null.
+        let values = unsafe { slice(value, nvr, "value") }?;
+        // One function for all types.
+        let value: &dyn Fn(usize) -> f64 = &|place| convert(values[place]);
+        component.instance.set(of, references, value)?;
+        Ok(None)
+    })
+}
+
+pub unsafe extern "C" fn fmi2DoStep<M: Model>(
+    c: fmi2Component,
+    currentCommunicationPoint: fmi2Real,
+    communicationStepSize: fmi2Real,
+    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
+) -> fmi2Status {
+    guarded_in_place::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
+        component
+            .instance
+            .do_step(currentCommunicationPoint, communicationStepSize)
+    })
+}
 
 pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     c: fmi2Component,
@@ -87,274 +322,6 @@ unsafe fn get_real<M: Model>(
         let store = |place: usize, number| values[place] = number;
         component.instance.get(Type::Real, references, store)?;
         Ok(None)
-    })
-}
-
-pub unsafe extern "C" fn fmi2GetInteger<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *mut fmi2Integer,
-) -> fmi2Status {
-    let convert = |number| number as fmi2Integer;
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe {
-        get::<M, _>(
-            c,
-            "fmi2GetInteger",
-            Type::Integer,
-            (vr, value, nvr),
-            convert,
-        )
-    }
-}
-
-pub unsafe extern "C" fn fmi2GetBoolean<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *mut fmi2Boolean,
-) -> fmi2Status {
-    let convert = |number| number as fmi2Boolean;
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe {
-        get::<M, _>(
-            c,
-            "fmi2GetBoolean",
-            Type::Boolean,
-            (vr, value, nvr),
-            convert,
-        )
-    }
-}
-
-/// No model has a String variable: any value reference is refused.
-pub unsafe extern "C" fn fmi2GetString<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *mut fmi2String,
-) -> fmi2Status {
-    let convert = |_| std::ptr::null();
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe { get::<M, _>(c, "fmi2GetString", Type::String, (vr, value, nvr), convert) }
-}
-
-/// Gets variables of one type; `convert` makes its values of ours.
-unsafe fn get<M: Model, T>(
-    c: fmi2Component,
-    function: &str,
-    of: Type,
-    (vr, value, nvr): (*const fmi2ValueReference, *mut T, usize),
-    convert: fn(f64) -> T,
-) -> fmi2Status {
-    guarded::<M>(c, function, Call::Get, |component| {
-        // SAFETY: the host's array holds `nvr` value references, or is null.
-        let references = unsafe { slice(vr, nvr, "vr") }?;
-        // SAFETY: the host's array has room for `nvr` values, or is null.
-        let values = unsafe { slice_mut(value, nvr, "value") }?;
-        // One function for all types.
-        let store: &mut dyn FnMut(usize, f64) =
-            &mut |place, number| values[place] = convert(number);
-        component.instance.get(of, references, store)?;
-        Ok(None)
-    })
-}
-
-// ---- Set variables ----
-
-pub unsafe extern "C" fn fmi2SetReal<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *const fmi2Real,
-) -> fmi2Status {
-    let at_once = |instance: &mut Instance<M>| {
-        // SAFETY: the host's arrays hold `nvr` values each, or are null.
-        match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
-            (Some(&[reference]), Some(&[value])) => instance.set_held(reference, value),
-            (Some(references), Some(values)) => instance.set_all_held(references, values),
-            _ => false,
-        }
-    };
-    if done_at_once::<M>(c, Call::Set, at_once) {
-        return fmi2Status_fmi2OK;
-    }
-    // Where an input does not keep its value, or is none.
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe {
-        set::<M, _>(c, "fmi2SetReal", Type::Real, (vr, value, nvr), |value| {
-            value
-        })
-    }
-}
-
-pub unsafe extern "C" fn fmi2SetInteger<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *const fmi2Integer,
-) -> fmi2Status {
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe {
-        set::<M, _>(
-            c,
-            "fmi2SetInteger",
-            Type::Integer,
-            (vr, value, nvr),
-            f64::from,
-        )
-    }
-}
-
-pub unsafe extern "C" fn fmi2SetBoolean<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *const fmi2Boolean,
-) -> fmi2Status {
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe {
-        set::<M, _>(
-            c,
-            "fmi2SetBoolean",
-            Type::Boolean,
-            (vr, value, nvr),
-            f64::from,
-        )
-    }
-}
-
-/// No model has a String variable: any value reference is refused.
-pub unsafe extern "C" fn fmi2SetString<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    value: *const fmi2String,
-) -> fmi2Status {
-    // SAFETY: the arguments are the host's, as they came.
-    unsafe { set::<M, _>(c, "fmi2SetString", Type::String, (vr, value, nvr), |_| 0.0) }
-}
-
-/// Sets variables of one type; `convert` makes our values of its.
-unsafe fn set<M: Model, T: Copy>(
-    c: fmi2Component,
-    function: &str,
-    of: Type,
-    (vr, value, nvr): (*const fmi2ValueReference, *const T, usize),
-    convert: fn(T) -> f64,
-) -> fmi2Status {
-    guarded::<M>(c, function, Call::Set, |component| {
-        // SAFETY: the host's array holds `nvr` value references, or is null.
-        let references = unsafe { slice(vr, nvr, "vr") }?;
-        // SAFETY: the host's array holds `nvr` values, or is null.
-        let values = unsafe { slice(value, nvr, "value") }?;
-        // One function for all types.
-        let value: &dyn Fn(usize) -> f64 = &|place| convert(values[place]);
-        component.instance.set(of, references, value)?;
-        Ok(None)
-    })
-}
-
-// ---- Derivatives ----
-
-pub unsafe extern "C" fn fmi2GetDirectionalDerivative<M: Model>(
-    c: fmi2Component,
-    vUnknown_ref: *const fmi2ValueReference,
-    nUnknown: usize,
-    vKnown_ref: *const fmi2ValueReference,
-    nKnown: usize,
-    dvKnown: *const fmi2Real,
-    dvUnknown: *mut fmi2Real,
-) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2GetDirectionalDerivative",
-        Call::DirectionalDerivative,
-        |component| {
-            // SAFETY: the host's array holds `nUnknown` value references, or is null.
-            let unknowns = unsafe { slice(vUnknown_ref, nUnknown, "vUnknown_ref") }?;
-            // SAFETY: the host's array holds `nKnown` value references, or is null.
-            let knowns = unsafe { slice(vKnown_ref, nKnown, "vKnown_ref") }?;
-            // SAFETY: the host's array holds `nKnown` values, or is null.
-            let changes = unsafe { slice(dvKnown, nKnown, "dvKnown") }?;
-            // SAFETY: the host's array has room for `nUnknown` values, or is null.
-            let derivatives = unsafe { slice_mut(dvUnknown, nUnknown, "dvUnknown") }?;
-            component.instance.directional_derivative(
-                unknowns,
-                knowns,
-                changes,
-                |place, value| derivatives[place] = value,
-            )?;
-            Ok(None)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    order: *const fmi2Integer,
-    value: *const fmi2Real,
-) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2SetRealInputDerivatives",
-        Call::SetInputDerivatives,
-        |component| {
-            // SAFETY: the host's array holds `nvr` value references, or is null.
-            let references = unsafe { slice(vr, nvr, "vr") }?;
-            // SAFETY: the host's array holds `nvr` orders, or is null.
-            let orders = unsafe { slice(order, nvr, "order") }?;
-            // SAFETY: the host's array holds `nvr` values, or is null.
-            let values = unsafe { slice(value, nvr, "value") }?;
-            component
-                .instance
-                .set_input_derivatives(references, orders, values)?;
-            Ok(None)
-        },
-    )
-}
-
-pub unsafe extern "C" fn fmi2GetRealOutputDerivatives<M: Model>(
-    c: fmi2Component,
-    vr: *const fmi2ValueReference,
-    nvr: usize,
-    order: *const fmi2Integer,
-    value: *mut fmi2Real,
-) -> fmi2Status {
-    guarded::<M>(
-        c,
-        "fmi2GetRealOutputDerivatives",
-        Call::GetOutputDerivatives,
-        |component| {
-            // SAFETY: the host's array holds `nvr` value references, or is null.
-            let references = unsafe { slice(vr, nvr, "vr") }?;
-            // SAFETY: the host's array holds `nvr` orders, or is null.
-            let orders = unsafe { slice(order, nvr, "order") }?;
-            // SAFETY: the host's array has room for `nvr` values, or is null.
-            let values = unsafe { slice_mut(value, nvr, "value") }?;
-            component
-                .instance
-                .output_derivatives(references, orders, |place, number| values[place] = number)?;
-            Ok(None)
-        },
-    )
-}
-
-// ---- Step ----
-
-pub unsafe extern "C" fn fmi2DoStep<M: Model>(
-    c: fmi2Component,
-    currentCommunicationPoint: fmi2Real,
-    communicationStepSize: fmi2Real,
-    _noSetFMUStatePriorToCurrentPoint: fmi2Boolean,
-) -> fmi2Status {
-    guarded_in_place::<M>(c, "fmi2DoStep", Call::DoStep, |component| {
-        component
-            .instance
-            .do_step(currentCommunicationPoint, communicationStepSize)
     })
 }
 

@@ -4,7 +4,7 @@ use fmi::fmi2::binding::*;
 
 use super::calls::Call;
 use super::envelope;
-use super::guard::{Component, guarded, place, slice, slice_mut};
+use super::{Component, guarded, place, slice, slice_mut};
 use crate::instance::Fault;
 use crate::model::Model;
 

@@ -4,7 +4,7 @@
 use fmi::fmi2::binding::*;
 
 use super::calls::Call;
-use super::guard::{guarded, place};
+use super::{guarded, place};
 use crate::instance::{Fault, Instance};
 use crate::model::Model;
 
