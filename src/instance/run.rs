@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
+use super::values::input_bit;
 use super::{Event, Fault, Instance, Severity, Simulation};
 use crate::model::variables::Access;
 use crate::model::{AtLimit, Collapse, Integration, Model};
@@ -303,9 +304,9 @@ fn follow_clock<M: Model>(
     deviation: f64,
 ) {
     if M::inputs_since(scene) == run.time() {
-        for (reference, variable) in M::VARIABLES.iter().enumerate() {
+        for (variable, reference) in M::VARIABLES.iter().zip(0..) {
             if let Access::Input { of, .. } = variable.access
-                && set & (1 << reference) == 0
+                && set & input_bit::<M>(reference) == 0
             {
                 of(scene).shift(deviation);
             }
