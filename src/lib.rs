@@ -3,17 +3,19 @@
 //!
 //! The modules in the order in which data flows through them:
 //!
-//! 1. [`solver`]: integrators of second-order equations of motion;
-//! 2. [`actuator`]: the physics: equation of motion (Eq. 16 of the paper), energy, voltage;
-//! 3. [`pull_in`]: the voltages beyond which the actuator collapses;
-//! 4. [`model`]: what a model has to say, and what its table of variables is made of;
-//! 5. [`nondimensional`]: the model of the paper: its table, what a host sets, what a host reads;
-//! 6. [`si`]: the model of the real actuator in SI units;
-//! 7. [`sweep`]: many scenes at once; [`sensitivity`]: derivatives of a motion with respect to its
+//! 1. [`arithmetic`]: what formulas are written in: lanes of numbers, derivatives, double-double;
+//! 2. [`solver`]: integrators of second-order equations of motion;
+//! 3. [`ensemble`]: many motions at once, one in each SIMD lane;
+//! 4. [`actuator`]: the physics: equation of motion (Eq. 16 of the paper), energy, voltage;
+//! 5. [`pull_in`]: the voltages beyond which the actuator collapses;
+//! 6. [`model`]: what a model has to say, and what its table of variables is made of;
+//! 7. [`nondimensional`]: the model of the paper: its table, what a host sets, what a host reads;
+//! 8. [`si`]: the model of the real actuator in SI units;
+//! 9. [`sweep`]: many scenes at once; [`sensitivity`]: derivatives of a motion with respect to its
 //!    parameters. Both need no host;
-//! 8. [`description`]: a table as `modelDescription.xml`;
-//! 9. [`instance`]: phases, checks and communication steps of an instance;
-//! 10. `fmi2`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
+//! 10. [`description`]: a table as `modelDescription.xml`;
+//! 11. [`instance`]: phases, checks and communication steps of an instance;
+//! 12. `fmi2`: the C functions of FMI 2.0, the only room with unsafe code (feature `fmi`).
 //!
 //! Life of an instance: `fmi2Instantiate` makes an [`instance::Instance`] with the start values of
 //! the table. Setters change its scene, for example [`nondimensional::scene::Scene`]. At the end of
@@ -24,7 +26,9 @@
 //! miniaturized dielectric elastomer actuators with surface effects*.
 
 pub mod actuator;
+pub mod arithmetic;
 pub mod description;
+pub mod ensemble;
 #[cfg(feature = "fmi")]
 pub mod fmi2;
 pub mod instance;

@@ -18,10 +18,10 @@
 use fearless_simd::Level;
 
 use crate::actuator::Ensemble;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::ensemble::{self, Arrival, Member};
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::ensemble::{self, Arrival, Member};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};

@@ -1,9 +1,9 @@
 //! Many scenes at once against the same scenes one by one.
 
 use dielectric_elastomer_actuator::actuator::Ensemble;
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::ensemble::{self, Member};
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
-use dielectric_elastomer_actuator::solver::ensemble::{self, Member};
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;

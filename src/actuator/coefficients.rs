@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::Parameters;
-use crate::solver::number::Number;
+use crate::arithmetic::number::Number;
 
 /// The coefficients of Eq. 16 in powers of the stretch λ:
 ///

@@ -8,9 +8,9 @@ use serde::{Deserialize, Serialize};
 
 pub use super::harmonic::Harmonic;
 use super::harmonic::TURN;
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
-use crate::solver::number::Number;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::Number;
 
 /// Derivatives of an input that are taken into account: orders 1 to 4.
 pub const HIGHEST_DERIVATIVE: usize = 4;

@@ -5,10 +5,10 @@ use fearless_simd::Simd;
 use super::coefficients::Coefficients;
 use super::drive::Drive;
 use super::motion::{self, Load, Motion};
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::ensemble::{self, LANES, Row};
-use crate::solver::lanes::Lanes;
-use crate::solver::number::Number;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
+use crate::ensemble::{self, LANES, Row};
 
 /// Blocks of steps after which the angle of the drive is worked out anew from the time.
 const RENEWED: u32 = 32;

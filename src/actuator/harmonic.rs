@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::double_double::{DoubleDouble, veltkamp_split};
-use crate::solver::number::Number;
+use crate::arithmetic::double_double::{DoubleDouble, veltkamp_split};
+use crate::arithmetic::number::Number;
 
 /// 2π.
 pub(super) const TURN: DoubleDouble = DoubleDouble {

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::coefficients::Coefficients;
 use super::drive::{Drive, LocalDrive};
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::number::Number;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::number::Number;
 use crate::solver::{Equation, LocalEquation, Sensitivity, State};
 
 /// The motion of an actuator under a drive.

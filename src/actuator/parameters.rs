@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::jet::Dual;
+use crate::arithmetic::jet::Dual;
 
 /// The nondimensional parameters of the actuator (Eq. 15 of the paper).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

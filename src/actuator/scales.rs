@@ -22,9 +22,9 @@ use super::device::parameters::MOST_BRANCHES;
 use super::device::{
     Branch, Breakdown, Damping, Device, Elasticity, Locking, Permittivity, Port, Source, Spring,
 };
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
-use crate::solver::number::{Number, Parameter};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::{Number, Parameter};
 
 /// ε0 in F/m (CODATA 2022).
 pub const VACUUM_PERMITTIVITY: f64 = 8.854_187_818_8e-12;

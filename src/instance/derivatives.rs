@@ -4,10 +4,10 @@
 use super::phase::Phase;
 use super::{Fault, Instance, values};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Polynomial};
+use crate::arithmetic::jet::HIGHEST_ORDER;
 use crate::model::variables::{Access, Causality, Derivatives, Kind, Variable};
 use crate::model::{Direction, Model};
 use crate::shortest::Shortest;
-use crate::solver::jet::HIGHEST_ORDER;
 
 impl<M: Model> Instance<M> {
     /// Sets derivatives of inputs, each given by value reference, order and value.

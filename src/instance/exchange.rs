@@ -5,10 +5,10 @@ use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
 use super::{Event, Fault, Instance, Simulation, check_time};
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::{Access, Kind};
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
-use crate::solver::double_double::DoubleDouble;
 
 /// A host finds the crossing of a limit to a tolerance, from either side of it:
 /// closer than this part of the limit it has been reached.

@@ -21,9 +21,9 @@ pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::Model;
 use crate::shortest::Shortest;
-use crate::solver::double_double::DoubleDouble;
 
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;

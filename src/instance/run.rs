@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::values::input_bit;
 use super::{Event, Fault, Instance, Severity, Simulation};
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::Access;
 use crate::model::{AtLimit, Collapse, Integration, Model};
 use crate::shortest::Shortest;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::trajectory::{Failure, Progress};
 
 /// Communication steps that can be followed: powers of shorter or longer ones are not numbers

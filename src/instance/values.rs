@@ -4,10 +4,10 @@ use super::derivatives::state_component;
 use super::phase::Phase;
 use super::{Exchange, Fault, Instance, Simulation};
 use crate::actuator::drive::Polynomial;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::{Access, Kind, Variability, Variable};
 use crate::model::{Model, Place, View};
 use crate::shortest::Shortest;
-use crate::solver::double_double::DoubleDouble;
 
 /// The types of FMI under which a variable can be got and set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

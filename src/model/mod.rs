@@ -14,12 +14,12 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use self::variables::{Alias, Variable};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::{Dual, TimeSeries};
+use crate::arithmetic::number::Number;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
-use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::Limits;
-use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress};
 
 /// A model: a marker type that names its table and its physics.

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 

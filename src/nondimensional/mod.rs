@@ -9,6 +9,9 @@ pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
 
 use serde::{Deserialize, Serialize};
 
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::{Dual, TimeSeries};
+use crate::arithmetic::number::Number;
 use crate::description::guid;
 use crate::model::variables::{self, Alias, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, View};
@@ -16,11 +19,8 @@ use crate::nondimensional::scene::Scene;
 use crate::nondimensional::view::{Quantities, Sample};
 use crate::shortest::Shortest;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
-use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
-use crate::solver::number::Number;
 use crate::solver::trajectory::Trajectory;
 
 /// The marker of the model.

@@ -1,6 +1,7 @@
 //! The variables of the nondimensional actuator.
 
 use super::Nondimensional;
+use crate::arithmetic::number::Number;
 use crate::model::AtLimit;
 use crate::model::variables::rows::{
     UNDECLARED, depends, extremes, formula, positive, real, unlimited, value,
@@ -9,7 +10,6 @@ use crate::model::variables::{
     Alias, Causality, Derivatives, Enumeration, Kind, Variability, Variable, checked, units,
 };
 use crate::nondimensional::view::Quantities;
-use crate::solver::number::Number;
 
 use Causality::{Local, Output};
 use Variability::{Fixed, Tunable};

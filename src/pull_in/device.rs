@@ -22,10 +22,10 @@ use crate::actuator::Drive;
 use crate::actuator::device::equation::Load;
 use crate::actuator::device::parameters::MOST_BRANCHES;
 use crate::actuator::device::{Branch, Damping, Device, Elasticity, LocalDevice, Port, Source};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::Number;
 use crate::solver::coupled::{MOST_STATES, Stage};
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
-use crate::solver::number::Number;
 
 mod losses;
 mod search;

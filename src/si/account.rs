@@ -6,10 +6,10 @@ use super::sample::Basis;
 use super::{OnBreakdown, Si, SiScene, SiState};
 use crate::actuator::device::{Exchanged, Source};
 use crate::actuator::drive::Polynomial;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{Account, Place, View};
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
-use crate::solver::double_double::DoubleDouble;
 
 /// The energies exchanged, the time of breakdown, and where the host's last step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

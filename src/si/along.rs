@@ -6,10 +6,10 @@ use super::scene::{BRANCHES, SiScene, described, internal, place};
 use crate::actuator::device::Source;
 use crate::actuator::device::equation::Load;
 use crate::actuator::scales::Scales;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::Number;
 use crate::model::{Direction, View};
 use crate::solver::coupled::Stage;
-use crate::solver::jet::Dual;
-use crate::solver::number::Number;
 
 impl View<'_, Si> {
     /// The present as it changes in a direction, exact to rounding. What is given as 0 for "none"

@@ -20,16 +20,16 @@ pub use table::{ALIASES, VARIABLES};
 
 use serde::{Deserialize, Serialize};
 
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::{Dual, TimeSeries};
+use crate::arithmetic::number::Number;
 use crate::description::guid;
 use crate::model::variables::{self, Access, Alias, Kind, Variable};
 use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
-use crate::solver::jet::{Dual, TimeSeries};
 use crate::solver::limits::{Limit, Limits};
-use crate::solver::number::Number;
 
 /// The marker of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

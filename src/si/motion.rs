@@ -10,11 +10,11 @@ use super::trajectory::SiTrajectory;
 use super::{Si, SiLimit};
 use crate::actuator::device::{DeviceMotion, Exchanged, LocalDevice};
 use crate::actuator::scales::Scales;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::Integration;
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::coupled::{self, CoupledEquation, Stage};
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::trajectory::{Failure, Progress};
 

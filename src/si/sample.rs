@@ -6,12 +6,12 @@ use super::scene::{BRANCHES, SiScene, SiState, internal};
 use crate::actuator::device::equation::Load;
 use crate::actuator::device::{Device, LocalDevice, Source};
 use crate::actuator::scales::Scales;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::{Dual, HIGHEST_ORDER, TimeSeries};
+use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 use crate::model::View;
 use crate::solver::State;
 use crate::solver::coupled::Stage;
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
-use crate::solver::number::{Number, Parameter, ParameterOf};
 
 macro_rules! sample {
     (

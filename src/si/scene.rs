@@ -8,13 +8,13 @@ use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial};
 use crate::actuator::scales::{Scales, SiDevice, SiElasticity};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Jet;
+use crate::arithmetic::number::Parameter;
 use crate::model::AtLimit;
 use crate::solver::State;
 use crate::solver::coupled::MOST_STATES;
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Jet;
 use crate::solver::limits::Limits;
-use crate::solver::number::Parameter;
 
 /// Maxwell branches.
 pub const BRANCHES: usize = crate::actuator::device::parameters::MOST_BRANCHES;

@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::scene::{SiScene, SiState, internal};
 use crate::actuator::device::DeviceMotion;
 use crate::actuator::scales::Scales;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::State;
 use crate::solver::coupled::{self, FullState, MOST_INTEGRALS, MOST_STATES};
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 

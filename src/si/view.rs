@@ -6,11 +6,11 @@ use super::scene::SiScene;
 use super::{Si, SiLimit, SiState};
 use crate::actuator::device::{Elasticity, Exchanged, Source, Stored};
 use crate::actuator::scales::Scales;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{AtLimit, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, Stage};
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 

@@ -18,10 +18,10 @@ use std::ops::RangeInclusive;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
 use super::iteration::{Diverged, IterationTolerance};
-use super::lanes::Lanes;
-use super::number::Number;
 use super::tables::{Columns, PAIRED_16, Pairs};
 use super::{LocalEquation, State};
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 
 /// The end of a step misses less than this part of the estimate: 16 to 26 000 times less on an AC motion near
 /// resonance, 2000 times in the mean.

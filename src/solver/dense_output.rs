@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::collocation::Series;
-use super::double_double::DoubleDouble;
 use super::position_origin::PositionOrigin;
-use super::roots::crossing;
 use super::tables::{Columns, PAIRED_16};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::roots::crossing;
 
 /// Node pairs of the method whose segments are kept.
 pub const PAIRS: usize = 8;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::dense_output::{PARTS, Segment};
-use super::roots::crossing;
+use crate::arithmetic::roots::crossing;
 
 /// The range of positions inside which the motion is followed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

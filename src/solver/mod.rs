@@ -1,47 +1,38 @@
 //! The integrator of x'' = f(t, x, x'). It knows no actuator and no FMI.
 //!
 //! * [`trajectory`]: a motion of this equation; [`coupled`]: one with first-order states and
-//!   dissipation; [`ensemble`]: many motions at once, one in each lane;
+//!   dissipation;
 //! * [`integrator`]: what the first two have in common: the steps that are kept, events, the
 //!   loop over steps; [`position_origin`]: where positions are counted from;
-//! * [`collocation`]: one step of Gauss collocation with dense output, its nodes in SIMD [`lanes`];
+//! * [`collocation`]: one step of Gauss collocation with dense output;
 //! * `endpoint`: steps of which only the end is asked for;
 //! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
 //! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;
 //! * [`dense_output`]: the polynomials that steps leave behind;
 //! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
 //! * [`linearized`]: the motion beside a motion; `tables`: nodes and weights of all methods;
-//! * [`roots`]: zeros and minima; [`sine`]: that of lanes;
-//! * [`number`], [`jet`]: one formula for lanes of numbers and for derivatives.
 
 pub mod collocation;
 pub mod coupled;
 pub mod dense_output;
-pub mod double_double;
 mod endpoint;
-pub mod ensemble;
 pub mod extremes;
 pub mod integrator;
 pub mod iteration;
-pub mod jet;
-pub mod lanes;
 pub mod limits;
 pub mod linearized;
-pub mod number;
 pub mod orbit;
 mod outcome;
 pub mod position_origin;
-pub mod roots;
 mod short_step;
-pub mod sine;
 pub mod step_control;
 mod tables;
 pub mod trajectory;
 
 use serde::{Deserialize, Serialize};
 
-use double_double::DoubleDouble;
-use number::Number;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::number::Number;
 
 /// Position x and rate x' of the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

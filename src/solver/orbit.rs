@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::dense_output::VALIDATION_TOLERANCE;
-use super::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
 
 /// The motion between two turning points of an autonomous, time-reversible equation.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use std::fmt::Debug;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
 
 /// Where positions are counted from.
 pub trait PositionOrigin: Copy + Debug + PartialEq + Serialize + DeserializeOwned {

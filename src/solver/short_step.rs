@@ -11,12 +11,12 @@ use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::collocation::product;
-use super::double_double::DoubleDouble;
-use super::lanes::Lanes;
-use super::number::Number;
 use super::step_control::{StepControl, UNSEEN};
 use super::tables::GAUSS_4;
 use super::{Equation, LocalEquation, Sensitivity, State};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 
 /// A short step is shorter than this part of the motion's time scale.
 const SHORT: f64 = 0.25;
@@ -309,8 +309,8 @@ fn solve<S: Simd, L: LocalEquation>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::arithmetic::number::Number;
     use crate::solver::limits::Limits;
-    use crate::solver::number::Number;
     use crate::solver::trajectory::Trajectory;
 
     /// x'' = sin(ωt) − x + x⁻⁵ − x'²/x: stiff on one side, and the rate enters.

@@ -24,7 +24,7 @@
 //! Sources: E. Hairer, S. P. Nørsett, G. Wanner, "Solving Ordinary Differential Equations I",
 //! 2nd ed., section II.7, and E. Hairer, G. Wanner, the same, II, section IV.5.
 
-use super::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
 
 mod paired;
 

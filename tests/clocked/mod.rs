@@ -2,10 +2,10 @@
 
 use std::ops::{Deref, DerefMut};
 
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::Equation;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{self, CoupledEquation};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::integrator::{Integrator, Method};
 use dielectric_elastomer_actuator::solver::trajectory::{Failure, Progress, Steps};
 

@@ -7,11 +7,11 @@ use dielectric_elastomer_actuator::actuator::device::{
 };
 use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
 use dielectric_elastomer_actuator::actuator::{Drive, Parameters};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, MOST_STATES, Progress, Stage,
 };
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use proptest::prelude::*;
 
 fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {

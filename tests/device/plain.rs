@@ -5,8 +5,8 @@ use crate::scene::{LIMITS, follow, start};
 use dielectric_elastomer_actuator::actuator::device::{Device, DeviceMotion, Spring};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::State;
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 
 const SHEET: Parameters = Parameters {

@@ -8,9 +8,9 @@ use dielectric_elastomer_actuator::actuator::device::{
     Branch, Device, DeviceMotion, Elasticity, Locking, Port, Source,
 };
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::pull_in::device::{dynamic, quasi_static};
 use dielectric_elastomer_actuator::solver::coupled::{CoupledEquation, Stage, Trajectory};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 
 fn sheet(aspect: f64) -> Device {
     Device::plain(Parameters {

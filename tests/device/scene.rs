@@ -5,12 +5,12 @@ use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::{DeviceMotion, Exchanged, Source, Stored};
 use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice, SiElasticity};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, FullState, LocalCoupledEquation, Progress, Stage, Trajectory,
 };
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use serde_json::Value;
 

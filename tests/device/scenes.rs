@@ -1,7 +1,7 @@
 //! Each reference scene, at times that are no ends of our steps.
 
 use crate::scene::{Present, Scene, follow, number, read, start};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 
 /// The largest errors of a scene: of the stretch, of the rate (in units of its largest value),
 /// of the charge, of the current, of voltage, field and capacitance, of the dashpots, of each energy in

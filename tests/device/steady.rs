@@ -1,7 +1,7 @@
 //! The periodic state of a damped actuator under an alternating voltage.
 
 use crate::scene::{Scene, follow, number, read, start};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use std::f64::consts::TAU;
 
 /// Samples of one period of the voltage.

@@ -6,13 +6,13 @@ use dielectric_elastomer_actuator::actuator::device::{
 };
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Drive, Parameters};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::pull_in;
 use dielectric_elastomer_actuator::pull_in::device::{
     Glassy, Search, dynamic, from_rest, quasi_static,
 };
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::coupled::{FullState, Progress, Trajectory};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use serde_json::Value;
 

@@ -3,9 +3,9 @@
 use crate::clocked::Clocked;
 use crate::scene::{LIMITS, Scene, follow, number, read, start, start_between};
 use dielectric_elastomer_actuator::actuator::device::{Breakdown, DeviceMotion};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{Event, Progress, Trajectory};
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 
 const SCENES: [&str; 6] = [

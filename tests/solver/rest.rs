@@ -1,7 +1,7 @@
 //! Motions at rest, next to it, and damped.
 
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
-use dielectric_elastomer_actuator::solver::number::Number;
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::arithmetic::number::Number;
 use dielectric_elastomer_actuator::solver::{LocalEquation, Sensitivity};
 
 use super::*;

@@ -1,6 +1,6 @@
 //! Communication steps of all sizes and numbers, late times, time reversal.
 
-use dielectric_elastomer_actuator::solver::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 
 use super::*;
 

@@ -12,9 +12,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
-use crate::solver::number::{Number, Parameter, ParameterOf};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 
 /// The law of the elastic stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

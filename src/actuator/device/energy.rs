@@ -13,8 +13,8 @@
 use super::elasticity::{Elasticity, invariant};
 use super::equation::{Load, LocalDevice, Powers};
 use super::parameters::Source;
+use crate::arithmetic::jet::Dual;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};
-use crate::solver::jet::Dual;
 
 /// An energy smaller than this, in units of E0, is not resolved relative to itself.
 const SMALL_ENERGY: f64 = 1e-9;

@@ -17,10 +17,10 @@ use super::elasticity::{Elasticity, Locking, invariant};
 use super::parameters::{Branch, Damping, Device, Permittivity, Source};
 use crate::actuator::Drive;
 use crate::actuator::drive::LocalDrive;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 use crate::solver::coupled::{MOST_STATES, Slope, Stage};
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
-use crate::solver::number::{Number, Parameter, ParameterOf};
 
 /// What the drive gives at a time, or at lanes of times.
 #[derive(Clone, Copy, Debug)]

@@ -6,11 +6,11 @@ use super::elasticity::Elasticity;
 use super::equation::{Load, LocalDevice, Powers};
 use super::parameters::{Device, Source};
 use crate::actuator::{Drive, Motion};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::number::Number;
 use crate::solver::coupled::{
     CoupledEquation, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage,
 };
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::number::Number;
 
 /// Nearer to a locking stretch than this part of it, the stretch is counted from there.
 const NEAR_WALL: f64 = 0.2;

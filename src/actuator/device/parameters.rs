@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::Elasticity;
 use crate::actuator::{Coefficients, Parameters};
-use crate::solver::number::Parameter;
+use crate::arithmetic::number::Parameter;
 
 /// Maxwell branches that an actuator may have.
 pub const MOST_BRANCHES: usize = 3;

@@ -7,9 +7,9 @@
 //! variable's value reference.
 
 use crate::actuator::drive::Polynomial;
+use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::model::{Model, View};
 use crate::shortest::Shortest;
-use crate::solver::jet::{Dual, TimeSeries};
 
 pub mod rows;
 pub mod units;

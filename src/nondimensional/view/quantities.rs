@@ -3,14 +3,14 @@
 
 use crate::actuator::Coefficients;
 use crate::actuator::motion::{self, Load};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::{Dual, HIGHEST_ORDER, TimeSeries};
+use crate::arithmetic::number::Number;
 use crate::model::Direction;
 use crate::nondimensional::Nondimensional;
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::solver::limits::Limit;
-use crate::solver::number::Number;
 
 /// The quantities that follow from the stretch, its derivatives and the voltage.
 pub trait Quantities<N: Number> {

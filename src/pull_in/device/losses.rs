@@ -20,15 +20,15 @@ use super::{Curves, Fold, Point, RELAXED};
 use crate::actuator::Drive;
 use crate::actuator::device::equation::Load;
 use crate::actuator::device::{Device, DeviceMotion, Port};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::jet::Dual;
+use crate::arithmetic::number::Parameter;
 use crate::solver::State;
 use crate::solver::coupled::{
     CoupledEquation, Event, Failure, FullState, MOST_INTEGRALS, MOST_STATES, Progress, Stage,
     Trajectory,
 };
-use crate::solver::double_double::DoubleDouble;
-use crate::solver::jet::Dual;
 use crate::solver::limits::{Limit, Limits};
-use crate::solver::number::Parameter;
 
 /// How closely the motion is followed.
 const TOLERANCE: f64 = 1e-14;

@@ -1,6 +1,7 @@
 //! Energies, thresholds, margins, and what has happened.
 
 use super::Row;
+use crate::arithmetic::number::Number;
 use crate::model::variables::Causality::{Local, Output};
 use crate::model::variables::rows::{
     UNDECLARED, depends, extremes, positive, real, unlimited, value,
@@ -8,7 +9,6 @@ use crate::model::variables::rows::{
 use crate::model::variables::{Derivatives, Kind, units};
 use crate::si::Si;
 use crate::si::thresholds::Threshold;
-use crate::solver::number::Number;
 
 /// A flag as a number.
 fn flag(holds: bool) -> f64 {

@@ -25,8 +25,8 @@ pub use trajectory::{Event, Failure, Progress, Trajectory};
 use serde::{Deserialize, Serialize};
 
 use super::State;
-use super::double_double::DoubleDouble;
-use super::number::Number;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::number::Number;
 
 /// First-order states that a system may have.
 pub const MOST_STATES: usize = 4;

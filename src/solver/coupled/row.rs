@@ -7,8 +7,8 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use fearless_simd::{Simd, f64x8};
 
-use crate::solver::lanes::Lanes;
-use crate::solver::number::Number;
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 use crate::solver::tables::Columns;
 
 /// Nodes in a register.

@@ -4,8 +4,8 @@ use fearless_simd::Simd;
 
 use super::polynomials::{Coefficients, TERMS};
 use super::row::Row;
+use crate::arithmetic::number::Number;
 use crate::solver::collocation::clenshaw;
-use crate::solver::number::Number;
 use crate::solver::tables::{Columns, Rule};
 
 /// Pairs of Legendre coefficients by which the slopes of the step before are continued: those of

@@ -4,7 +4,7 @@ use fearless_simd::{Simd, SimdBase, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::plan::{NODES, Pair, Plan, pair, shifted, unpair};
-use crate::solver::number::Number;
+use crate::arithmetic::number::Number;
 
 /// The last step.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -9,7 +9,7 @@ use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{NODES, Pair, pair, scaled, unpair};
 use super::table::Diagonals;
-use crate::solver::number::Number;
+use crate::arithmetic::number::Number;
 
 /// A matrix by rows.
 pub type Matrix = [[f64; NODES]; NODES];

@@ -4,8 +4,8 @@ use fearless_simd::{Simd, SimdBase, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::plan::Pair;
+use crate::arithmetic::lanes::Lanes;
 use crate::solver::LocalEquation;
-use crate::solver::lanes::Lanes;
 
 /// States over which it is averaged.
 const AVERAGED: f64 = 16.0;

@@ -11,10 +11,10 @@
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::double_double::DoubleDouble;
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
 use super::step_control::{HALVED, SHORTEST, StepControl, shortened};
 use super::{Equation, LocalEquation, State};
+use crate::arithmetic::double_double::DoubleDouble;
 
 mod before;
 mod length;

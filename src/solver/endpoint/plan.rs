@@ -21,9 +21,9 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::matrix::{diagonals, quotient, rows, sum};
 use super::table::{Dense, Diagonals, Matrices, TABLE};
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 use crate::solver::collocation::clenshaw;
-use crate::solver::lanes::Lanes;
-use crate::solver::number::Number;
 
 /// Nodes of a step.
 pub const NODES: usize = 8;

@@ -3,9 +3,9 @@
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{Pair, Plan, largest};
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 use crate::solver::iteration::{Diverged, IterationTolerance};
-use crate::solver::lanes::Lanes;
-use crate::solver::number::Number;
 use crate::solver::{LocalEquation, State};
 
 /// The stages of a step, as far as they have been iterated.

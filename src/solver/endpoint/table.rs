@@ -1,7 +1,7 @@
 //! The table of Gauss–Legendre collocation with 8 nodes that are not paired, made by the
 //! compiler (see [`crate::solver::tables`]).
 
-use crate::solver::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::tables::{Exact, dot, legendre};
 
 /// Numbers at the nodes, in two registers.

@@ -1,7 +1,7 @@
 //! A way to go, and how far it was gone.
 
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::State;
-use crate::solver::double_double::DoubleDouble;
 
 /// A way to go.
 #[derive(Clone, Copy, Debug)]

@@ -2,12 +2,12 @@
 //! repeats, extremes that are recorded.
 
 use super::{Integrator, Method, Mode};
-use crate::solver::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::roots::crossing;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::{Limit, Limits};
 use crate::solver::orbit::Orbit;
 use crate::solver::position_origin::PositionOrigin;
-use crate::solver::roots::crossing;
 
 impl<M: Method> Integrator<M> {
     /// Moves the present to `target`, which lies in one of the steps.

@@ -13,13 +13,13 @@ use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::dense_output::{History, KeptStep, Segment};
-use super::double_double::DoubleDouble;
 use super::extremes::Extremes;
 use super::limits::Limits;
 use super::orbit::Orbit;
 use super::outcome::{Failure, Progress};
 use super::position_origin::PositionOrigin;
 use super::step_control::StepControl;
+use crate::arithmetic::double_double::DoubleDouble;
 
 mod events;
 mod validation;

@@ -1,8 +1,8 @@
 //! Whether numbers fit together as those of a motion that has been followed.
 
 use super::{Integrator, Method, Mode};
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::dense_output::VALIDATION_TOLERANCE;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
 use crate::solver::orbit::Orbit;

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 
 use super::collocation::{Guess, Substep, Task, solve_by_16};
 use super::dense_output::{History, PAIRS, Segment};
-use super::double_double::DoubleDouble;
 use super::endpoint::{End, EndpointSteps, Way};
 use super::extremes::Extremes;
 use super::integrator::{Integrator, Method, Mode};
@@ -18,6 +17,7 @@ pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
 use super::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
 use super::{Equation, LocalEquation, State};
+use crate::arithmetic::double_double::DoubleDouble;
 
 mod substeps;
 

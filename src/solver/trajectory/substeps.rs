@@ -1,9 +1,9 @@
 //! A motion followed substep by substep, for who needs each of them.
 
 use super::{Failure, Progress, Trajectory};
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::Equation;
 use crate::solver::dense_output::Segment;
-use crate::solver::double_double::DoubleDouble;
 
 impl Trajectory {
     /// Follows the motion over one substep of 16 nodes from `clock`, no longer than `most`, and

@@ -74,7 +74,7 @@ pub(super) fn by_degree(segment: &Segment) -> Coefficients {
 
 impl Method for Carried {
     type Event = super::Event;
-    type Origin = crate::solver::double_double::DoubleDouble;
+    type Origin = crate::arithmetic::double_double::DoubleDouble;
 
     /// Counted in iterations: about a second of work.
     const MOST_STEPS: u32 = 600_000;

@@ -1,9 +1,9 @@
 //! Where a step meets a limit of the position, or the margin of the equation vanishes.
 
 use super::{Event, Trajectory};
+use crate::arithmetic::roots::{crossing, lowest_between};
 use crate::solver::coupled::{CoupledEquation, LocalCoupledEquation, Stage};
 use crate::solver::dense_output::{PARTS, Segment};
-use crate::solver::roots::{crossing, lowest_between};
 
 impl Trajectory {
     /// Looks for the first event in the last step, whose nodes lie in the `range`.

@@ -2,12 +2,12 @@
 
 use super::Trajectory;
 use super::evaluation::by_degree;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
 use crate::solver::coupled::stages::{self, Iteration, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
 use crate::solver::dense_output::{PAIRS, Segment};
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};

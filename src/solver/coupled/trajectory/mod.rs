@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::dense_output::History;
-use crate::solver::double_double::DoubleDouble;
 use crate::solver::integrator::{Integrator, Method, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;

@@ -14,7 +14,7 @@
 use fearless_simd::Simd;
 
 use super::{LANES, Packed, Row};
-use crate::solver::lanes::Lanes;
+use crate::arithmetic::lanes::Lanes;
 
 /// Values of f that the method looks back on.
 pub const ORDER: usize = 10;

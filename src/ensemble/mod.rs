@@ -9,11 +9,11 @@
 
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
-use crate::solver::double_double::DoubleDouble;
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::number::Number;
 use crate::solver::extremes::Extremes;
-use crate::solver::lanes::Lanes;
 use crate::solver::limits::Limits;
-use crate::solver::number::Number;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, LocalEquation, State};
 
