@@ -342,7 +342,7 @@ impl LocalDrive<'_> {
         Some([series, [0.0; 5]])
     }
 
-    /// What the voltage may be for a while, by size.
+    /// A bound of the absolute voltage over the next steps.
     #[inline(always)]
     pub fn largest_voltage(&self) -> f64 {
         self.input(&self.drive.voltage, 0.0).abs() + self.drive.harmonic.amplitude.abs()

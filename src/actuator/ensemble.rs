@@ -156,7 +156,7 @@ impl<N: Number> ensemble::Packed<N> for Packed<N> {
         motion::acceleration(&self.coefficients, load, position, rate)
     }
 
-    /// (5λ⁻⁶ + a1 + 3(|a3| + φ²)λ² + 5a5 λ⁴)/(c + 2λ⁻⁶): the terms of the stiffness by size.
+    /// (5λ⁻⁶ + a1 + 3(|a3| + φ²)λ² + 5a5 λ⁴)/(c + 2λ⁻⁶): with the absolute values of the terms.
     #[inline(always)]
     fn stiffness(&self, position: N) -> N {
         let number = |value: f64| position.same(value);

@@ -33,7 +33,7 @@ pub struct Load<N> {
 /// λ'' = [6λ'² + λ² + S λ⁷ − λ⁸ (linear + (cubic − φ²) λ² + quintic λ⁴)] / (c λ⁷ + 2λ)
 /// ```
 ///
-/// The powers are arranged so that few operations wait for one another.
+/// The powers are arranged so that few operations depend on one another.
 #[inline(always)]
 pub fn acceleration<N: Number>(
     coefficients: &Coefficients<N>,
@@ -186,8 +186,8 @@ impl LocalEquation for LocalMotion<'_> {
         }
     }
 
-    /// √|∂λ''/∂λ| with the terms of the stiffness added up by size, since their sum
-    /// may vanish.
+    /// √|∂λ''/∂λ| with the absolute values of the terms of the stiffness added up, since their
+    /// sum may vanish.
     #[inline(always)]
     fn natural_frequency(&self, state: State) -> f64 {
         let voltage = self.drive.largest_voltage();
@@ -211,8 +211,8 @@ impl LocalEquation for LocalMotion<'_> {
 }
 
 /// √(a/b) of positive numbers, to 10 %. The bits of a number are its logarithm, linear
-/// between powers of 2: short steps would wait for a true quotient and root longer
-/// than for f.
+/// between powers of 2. A true quotient and root would take longer than f, and a short step
+/// depends on them.
 #[inline(always)]
 fn root_of_quotient(a: f64, b: f64) -> f64 {
     const ONE: i64 = 1.0_f64.to_bits() as i64;

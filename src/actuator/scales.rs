@@ -112,7 +112,7 @@ pub enum SiElasticity<P = f64> {
 pub struct Scales<P = f64> {
     /// t0 in s.
     pub time: P,
-    /// 1/t0 in 1/s, in double length.
+    /// 1/t0 in 1/s, as a double-double number.
     pub exact_frequency: DoubleDouble,
     /// V0 in V.
     pub voltage: P,
@@ -143,8 +143,8 @@ impl Scales {
         Scales::in_time(device, exact_time.value(), exact_frequency)
     }
 
-    /// A time in s, kept as a double-length sum, as a nondimensional one. Of the whole time, no
-    /// rounding adds up from step to step.
+    /// A time in s, as a nondimensional double-double number. It is converted as a whole, so
+    /// that no rounding adds up from step to step.
     #[must_use]
     #[inline]
     pub fn time(&self, seconds: DoubleDouble) -> DoubleDouble {

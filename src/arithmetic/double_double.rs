@@ -1,4 +1,4 @@
-//! DoubleDouble-double arithmetic: an unevaluated sum of two `f64`, about 32 digits.
+//! Double-double arithmetic: an unevaluated sum of two `f64`, about 32 digits.
 //!
 //! Origin: T. J. Dekker, "A floating-point technique for extending the
 //! available precision", Numer. Math. 18 (1971) 224–242; the sums are Knuth's.
@@ -47,7 +47,7 @@ impl DoubleDouble {
     #[must_use]
     #[inline]
     pub const fn add(self, other: DoubleDouble) -> DoubleDouble {
-        // A branch is foreseen; the chain of sums below would be waited for.
+        // The processor predicts the branch. The sums below depend on one another.
         if other.high == 0.0 && other.low == 0.0 {
             return self;
         }
@@ -82,8 +82,8 @@ impl DoubleDouble {
     #[must_use]
     #[inline]
     pub const fn since(self, other: DoubleDouble) -> f64 {
-        // One after the other: two differences at a time would be taken from one load, which
-        // waits long for numbers that have just been put down one by one.
+        // One half after the other. Both in one register would be loaded together, and that load
+        // waits until two stores of single numbers have ended (store forwarding).
         ((self.high - other.high) + self.low) - other.low
     }
 

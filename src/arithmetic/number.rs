@@ -35,8 +35,8 @@ pub trait Number:
     #[must_use]
     fn magnitude(self) -> Self;
 
-    /// The nearest whole number, the even one of two, of a number below 2⁵¹ by size:
-    /// without the instruction, for which the oldest x86-64 would call a function.
+    /// The nearest whole number, the even one of two, of a number whose absolute value is below
+    /// 2⁵¹. It uses no rounding instruction: the oldest x86-64 would call a function for that.
     #[must_use]
     #[inline(always)]
     fn whole(self) -> Self {

@@ -36,7 +36,7 @@ pub fn sine<N: Number>(angle: N) -> N {
     let odd = turns.mul_add(number(-2.0), half_turns);
     let sign = (odd * odd).mul_add(number(-2.0), number(1.0));
     let turned = rest * sign;
-    // By pairs of terms (Estrin), since each operation of a single sum would wait for the last.
+    // By pairs of terms (Estrin): in Horner's scheme each operation depends on the last.
     let pair = |k: usize| number(SINE[k + 1]).mul_add(square, number(SINE[k]));
     let fourth = square * square;
     let eighth = fourth * fourth;

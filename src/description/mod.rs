@@ -24,8 +24,8 @@ pub const LOG_CATEGORIES: [(&str, &str); 3] = [
     ("logStatusError", "calls that were refused or discarded"),
 ];
 
-/// Declared, not the highest that is served: a master that asks for one value of
-/// each output reads as many as the declared order, so that it reads too far.
+/// The order that is declared. It is not the highest order that is served: OMSimulator asks for
+/// one value of each output and reads as many as are declared, beyond the end of its array.
 const OUTPUT_DERIVATIVE_ORDER: u32 = 1;
 
 /// The text of the `modelDescription.xml` of a model.
@@ -84,7 +84,7 @@ fn description<M: Model>() -> FmiModelDescription {
                 .map(|(name, description)| Category { name, description })
                 .into(),
         },
-        // No tolerance: it would be that of two integrators, ours and a host's.
+        // No tolerance: hosts would use it both for our integrator and for their own.
         default_experiment: DefaultExperiment {
             start_time: Number(0.0),
             stop_time: Number(M::EXPERIMENT.stop_time),

@@ -22,7 +22,7 @@ mod turning_point;
 
 use multistep::{BLOCK, LaneStates, ORDER, STABLE};
 
-/// LaneStates that are followed at once.
+/// Motions that are followed at once.
 pub const LANES: usize = 8;
 
 /// Numbers of all lanes.

@@ -244,7 +244,7 @@ pub unsafe extern "C" fn fmi2SetReal<M: Model>(
     if done_at_once::<M>(c, Call::Set, at_once) {
         return fmi2Status_fmi2OK;
     }
-    // Where an input does not keep its value, or is none.
+    // Where an input follows a polynomial, or the variable is not an input.
     // SAFETY: the arguments are the host's, as they came.
     unsafe {
         set::<M, _>(c, "fmi2SetReal", Type::Real, (vr, value, nvr), |value| {

@@ -1,5 +1,5 @@
-//! What a host may ask about a step. Steps are done when `fmi2DoStep` returns: there is none to
-//! wait for or to cancel.
+//! What a host may ask about a step. A step is complete when `fmi2DoStep` returns, so a host can
+//! neither wait for one nor cancel it.
 
 use fmi::fmi2::binding::*;
 

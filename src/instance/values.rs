@@ -25,10 +25,10 @@ pub enum Type {
 impl Type {
     fn name(self) -> &'static str {
         match self {
-            Type::Real => "Real",
-            Type::Integer => "Integer or Enumeration",
-            Type::Boolean => "Boolean",
-            Type::String => "String",
+            Type::Real => "a real number",
+            Type::Integer => "a whole number or an item of an enumeration",
+            Type::Boolean => "a Boolean",
+            Type::String => "a text",
         }
     }
 
@@ -64,7 +64,7 @@ fn typed<M: Model>(reference: u32, wanted: Type) -> Result<&'static Variable<M>,
 fn not_of_type<M: Model>(reference: u32, wanted: Type) -> Fault {
     match row::<M>(reference) {
         Ok(variable) => Fault::error(format!(
-            "{} (value reference {reference}) is not of type {}",
+            "{} (value reference {reference}) is not {}",
             variable.name,
             wanted.name()
         )),

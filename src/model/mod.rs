@@ -49,7 +49,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     const INDICATOR_COUNT: usize;
 
     /// The experiment that a host proposes to its user.
-    const EXPERIMENT: Experiment;
+    const EXPERIMENT: DefaultExperiment;
 
     /// Everything that a host sets.
     type Scene: Clone + Debug + PartialEq + Serialize + DeserializeOwned;
@@ -152,7 +152,7 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
         0.0
     }
 
-    /// Why there is no motion from the present state, in words, if there is none: the host's
+    /// Checks that there is a motion from the present state. There is none where the host's
     /// integrator has tried a state that is too far out.
     ///
     /// # Errors
@@ -241,7 +241,7 @@ impl<M: Model> Account<M> for () {
 
 /// What a host does with a model at first.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Experiment {
+pub struct DefaultExperiment {
     /// Stop time.
     pub stop_time: f64,
     /// Communication step.

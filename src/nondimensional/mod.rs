@@ -5,7 +5,7 @@ pub mod scene;
 mod table;
 pub mod view;
 
-pub use table::{ALIASES, ON_PULL_IN, VARIABLES};
+pub use table::{ALIASES, VARIABLES};
 
 use serde::{Deserialize, Serialize};
 
@@ -14,7 +14,7 @@ use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::arithmetic::number::Number;
 use crate::description::guid;
 use crate::model::variables::{self, Alias, Variable};
-use crate::model::{AtLimit, Direction, Experiment, Model, View};
+use crate::model::{AtLimit, DefaultExperiment, Direction, Model, View};
 use crate::nondimensional::scene::Scene;
 use crate::nondimensional::view::{Quantities, Sample};
 use crate::shortest::Shortest;
@@ -40,7 +40,7 @@ impl Model for Nondimensional {
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Nondimensional, 2>(&VARIABLES);
     /// λ − λ_min and λ_max − λ.
     const INDICATOR_COUNT: usize = 2;
-    const EXPERIMENT: Experiment = Experiment {
+    const EXPERIMENT: DefaultExperiment = DefaultExperiment {
         stop_time: 100.0,
         step_size: 0.1,
     };

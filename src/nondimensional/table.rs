@@ -4,27 +4,15 @@ use super::Nondimensional;
 use crate::arithmetic::number::Number;
 use crate::model::AtLimit;
 use crate::model::variables::rows::{
-    UNDECLARED, depends, extremes, formula, positive, real, unlimited, value,
+    ON_PULL_IN, UNDECLARED, depends, extremes, formula, positive, real, unlimited, value,
 };
 use crate::model::variables::{
-    Alias, Causality, Derivatives, Enumeration, Kind, Variability, Variable, checked, units,
+    Alias, Causality, Derivatives, Kind, Variability, Variable, checked, units,
 };
 use crate::nondimensional::view::Quantities;
 
 use Causality::{Local, Output};
 use Variability::{Fixed, Tunable};
-
-/// What happens at a limit of the stretch.
-pub static ON_PULL_IN: Enumeration = Enumeration {
-    name: "OnPullIn",
-    items: &[
-        ("hold", "the actuator stays at the limit and steps go on"),
-        (
-            "terminate",
-            "the step ends there and the host is asked to terminate",
-        ),
-    ],
-};
 
 type Row = Variable<Nondimensional>;
 

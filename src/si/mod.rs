@@ -25,7 +25,7 @@ use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::arithmetic::number::Number;
 use crate::description::guid;
 use crate::model::variables::{self, Access, Alias, Kind, Variable};
-use crate::model::{AtLimit, Direction, Experiment, Model, Place, View};
+use crate::model::{AtLimit, DefaultExperiment, Direction, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::extremes::Extremes;
@@ -63,7 +63,7 @@ impl Model for Si {
     /// it.
     const INDICATOR_COUNT: usize = 3;
     /// Some periods of the actuator of the start values.
-    const EXPERIMENT: Experiment = Experiment {
+    const EXPERIMENT: DefaultExperiment = DefaultExperiment {
         stop_time: 3e-5,
         step_size: 1e-7,
     };

@@ -102,9 +102,9 @@ sample! {
     electrical_power,
     /// The power that the force supplies in W.
     mechanical_power,
-    /// dQ/dt in A of the charge as a state; 0 where it is none.
+    /// dQ/dt in A of the charge as a state; 0 where the charge is no state.
     charge_state_rate,
-    /// The charge as a state in C; what it was at the start where it is none.
+    /// The charge as a state in C; its start value where it is no state.
     charge_state,
     /// ξ of the first dashpot.
     dashpot_1,

@@ -19,7 +19,7 @@ fn bad_values_are_refused_by_name_and_limit_and_change_nothing() {
         (
             "pulled_in",
             1.0,
-            "pulled_in (value reference 16) is not of type Real",
+            "pulled_in (value reference 16) is not a real number",
         ),
     ];
     for (name, value, message) in cases {

@@ -16,7 +16,7 @@ pub mod units;
 
 pub use units::Unit;
 
-/// Role of a variable (FMI 2.0, section 2.2.7).
+/// Role of a variable, as FMI defines it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Causality {
     /// The host sets it at communication points.
@@ -29,7 +29,7 @@ pub enum Causality {
     Local,
 }
 
-/// When a variable may change (FMI 2.0, section 2.2.7).
+/// When a variable may change, as FMI defines it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Variability {
     /// Fixed after initialization.
@@ -69,7 +69,7 @@ pub struct Enumeration {
     pub items: &'static [(&'static str, &'static str)],
 }
 
-/// Which numbers between the limits of a real variable can be meant.
+/// Which values between its limits a real variable can have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Meant {
     /// All of them.
@@ -166,12 +166,12 @@ pub struct Variable<M: Model> {
     pub kind: Kind,
     /// The unit of a real one.
     pub unit: &'static Unit,
-    /// Which of the numbers between the limits can be meant.
+    /// Which values between its limits it can have.
     pub meant: Meant,
     /// The terminal to which it belongs.
     pub member: Option<Member>,
-    /// How it follows from what an engineer would type, where that is likely to be
-    /// mistaken for it; for messages.
+    /// For messages: how the value follows from the number in another unit that a user is likely
+    /// to type instead.
     pub conversion: Option<&'static str>,
     /// The value before the host sets another; none for results.
     pub start: Option<f64>,
@@ -192,8 +192,8 @@ pub struct Alias {
     pub of: &'static str,
 }
 
-// Derived, these would ask the same of the scene and the samples of the model, of which there are
-// only function pointers here.
+// Not derived: that would require `Copy` of the model's types, to which there are only function
+// pointers here.
 macro_rules! copied {
     ($($name:ident),*) => {$(
         impl<M: Model> Clone for $name<M> {

@@ -1,8 +1,8 @@
 //! What the rows of the table are made with.
 
 use super::{
-    Access, Causality, Dependencies, Derivatives, Kind, Meant, Member, Terminal, Unit, Variability,
-    Variable, units,
+    Access, Causality, Dependencies, Derivatives, Enumeration, Kind, Meant, Member, Terminal, Unit,
+    Variability, Variable, units,
 };
 use crate::actuator::drive::Polynomial;
 use crate::model::{Model, View};
@@ -97,8 +97,20 @@ pub const fn depends(
     Dependencies { now, at_start }
 }
 
-/// Of results that the model structure does not list.
+/// The dependencies of results that the model structure does not list.
 pub const UNDECLARED: Dependencies = depends(&[], &[]);
+
+/// What happens at a limit of the stretch.
+pub static ON_PULL_IN: Enumeration = Enumeration {
+    name: "OnPullIn",
+    items: &[
+        ("hold", "the actuator stays at the limit and steps go on"),
+        (
+            "terminate",
+            "the step ends there and the host is asked to terminate",
+        ),
+    ],
+};
 
 impl<M: Model> Variable<M> {
     /// A row for an input of the host.
@@ -109,20 +121,8 @@ impl<M: Model> Variable<M> {
         get: fn(&View<M>) -> f64,
         of: fn(&mut M::Scene) -> &mut Polynomial,
     ) -> Variable<M> {
-        Variable {
-            name,
-            description,
-            causality: Causality::Input,
-            variability: Variability::Continuous,
-            kind,
-            unit: &units::ONE,
-            meant: Meant::Any,
-            member: None,
-            conversion: None,
-            start: Some(0.0),
-            derivative_of: None,
-            access: Access::Input { get, of },
-        }
+        let role = (Causality::Input, Variability::Continuous);
+        Variable::new(name, description, role, kind, Access::Input { get, of }).starting_at(0.0)
     }
 
     /// A row for a parameter.
@@ -135,24 +135,13 @@ impl<M: Model> Variable<M> {
         get: fn(&M::Scene) -> f64,
         set: fn(&mut M::Scene, f64),
     ) -> Variable<M> {
-        Variable {
-            name,
-            description,
-            causality: Causality::Parameter,
-            variability,
-            kind,
-            unit: &units::ONE,
-            meant: Meant::Any,
-            member: None,
-            conversion: None,
-            start: Some(start),
-            derivative_of: None,
-            access: Access::Setting {
-                get,
-                set,
-                from_now_on: None,
-            },
-        }
+        let role = (Causality::Parameter, variability);
+        let access = Access::Setting {
+            get,
+            set,
+            from_now_on: None,
+        };
+        Variable::new(name, description, role, kind, access).starting_at(start)
     }
 
     /// A row for a result.
@@ -168,6 +157,22 @@ impl<M: Model> Variable<M> {
             Kind::Boolean | Kind::Enumeration(_) => Variability::Discrete,
             Kind::Real { .. } => Variability::Continuous,
         };
+        let access = Access::Result {
+            get,
+            derivatives,
+            dependencies,
+        };
+        Variable::new(name, description, (causality, variability), kind, access)
+    }
+
+    /// A row of a pure number without a start value.
+    const fn new(
+        name: &'static str,
+        description: &'static str,
+        (causality, variability): (Causality, Variability),
+        kind: Kind,
+        access: Access<M>,
+    ) -> Variable<M> {
         Variable {
             name,
             description,
@@ -180,11 +185,7 @@ impl<M: Model> Variable<M> {
             conversion: None,
             start: None,
             derivative_of: None,
-            access: Access::Result {
-                get,
-                derivatives,
-                dependencies,
-            },
+            access,
         }
     }
 
@@ -194,13 +195,13 @@ impl<M: Model> Variable<M> {
         self
     }
 
-    /// The row with what to tell who has typed a value in another unit.
+    /// The row with a hint for a user who has typed a value in another unit.
     pub const fn converted(mut self, conversion: &'static str) -> Variable<M> {
         self.conversion = Some(conversion);
         self
     }
 
-    /// The row of a number of which only these can be meant.
+    /// The row of a number that can only have these values between its limits.
     pub const fn meant(mut self, meant: Meant) -> Variable<M> {
         self.meant = meant;
         self
@@ -234,7 +235,7 @@ impl<M: Model> Variable<M> {
         self
     }
 
-    /// The row of an input that has this value until the host sets another.
+    /// The row with this value until the host sets another.
     pub const fn starting_at(mut self, start: f64) -> Variable<M> {
         self.start = Some(start);
         self

@@ -36,7 +36,7 @@ const TOLERANCE: f64 = 1e-14;
 /// Relative width at which the search ends.
 const RESOLUTION: f64 = 1e-13;
 
-/// Looks at the motion in each of which it is asked for its energy, at most.
+/// The largest number of times that a motion is interrupted to compute its energy.
 const MOST_LOOKS: u32 = 1000;
 
 /// Iterations of all motions of a search, at most: some seconds of work.

@@ -4,7 +4,7 @@ use super::Row;
 use crate::actuator::device::Source;
 use crate::model::AtLimit;
 use crate::model::variables::Variability::{Fixed, Tunable};
-use crate::model::variables::rows::real;
+use crate::model::variables::rows::{ON_PULL_IN, real};
 use crate::model::variables::{Enumeration, Kind, Meant, units};
 use crate::si::OnBreakdown;
 
@@ -175,18 +175,6 @@ static SOURCE: Enumeration = Enumeration {
         (
             "charge",
             "the charge on the electrodes, input charge_imposed",
-        ),
-    ],
-};
-
-/// What happens at a limit of the stretch.
-static ON_PULL_IN: Enumeration = Enumeration {
-    name: "OnPullIn",
-    items: &[
-        ("hold", "the actuator stays at the limit and steps go on"),
-        (
-            "terminate",
-            "the step ends there and the host is asked to terminate",
         ),
     ],
 };

@@ -15,7 +15,7 @@ fn flag(holds: bool) -> f64 {
     f64::from(u8::from(holds))
 }
 
-/// Of what changes at events only.
+/// Derivatives of what changes at events only.
 const AT_EVENTS: Option<Derivatives<Si>> = Some(Derivatives {
     along: |sample| sample.stretch().same(0.0),
     from_now_on: |sample| sample.stretch().same(0.0),

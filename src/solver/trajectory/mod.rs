@@ -1,4 +1,5 @@
-//! The motion of x'' = f(t, x, x'), followed by the cheapest steps that what is asked of it allows.
+//! The motion of x'' = f(t, x, x'), followed by the cheapest kind of steps that gives what the
+//! caller asks for.
 //!
 //! Where the motion repeats, its steps are kept until it has turned twice. Between two turning
 //! points it then runs there and back for ever, so that no further step is integrated, whatever
