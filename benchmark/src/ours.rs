@@ -2,8 +2,8 @@
 
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
-use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 use fearless_simd::Level;

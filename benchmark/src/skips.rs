@@ -6,10 +6,10 @@ use std::time::Duration;
 
 use dielectric_elastomer_actuator::actuator::motion::{Load, LocalMotion};
 use dielectric_elastomer_actuator::actuator::{Drive, Motion};
-use dielectric_elastomer_actuator::nondimensional::value_reference;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
-use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::arithmetic::number::Number;
+use dielectric_elastomer_actuator::nondimensional::value_reference;
+use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
 use dielectric_elastomer_actuator::solver::{Equation, LocalEquation, Sensitivity, State};
 

@@ -40,7 +40,7 @@ pub fn seal<M: Model>(contents: &[u8], target: &mut [u8]) -> Result<(), Fault> {
     let header = header::<M>(contents);
     if target.len() != header.len() + contents.len() {
         return Err(Fault::error(format!(
-            "room for {} bytes was given; fmi2SerializedFMUstateSize says {}",
+            "the array has {} bytes; fmi2SerializedFMUstateSize says {}",
             target.len(),
             header.len() + contents.len()
         )));

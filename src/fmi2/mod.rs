@@ -3,8 +3,13 @@
 //! of the instance, inside the guard.
 //!
 //! In this file: the guard, the host's pointers, and what a simulation calls from step to step:
-//! `fmi2SetReal`, `fmi2DoStep`, `fmi2GetReal`. The other functions stand in `variables`,
-//! `lifecycle`, `exchange`, `status` and `state`.
+//! `fmi2SetReal`, `fmi2DoStep`, `fmi2GetReal`. Beside it:
+//!
+//! * `lifecycle`, `variables`, `exchange`, `status`, `state`: the other functions;
+//! * `calls`: which call each phase permits;
+//! * `host`: the host's log; `envelope`: a saved state as bytes with a checksum;
+//! * [`float_environment`]: the host's traps, flags and rounding, kept;
+//! * `signatures`: the names of all functions, checked against their types by the compiler.
 //!
 //! Safety of all of them: the host owes what the standard says, that is,
 //! components from `fmi2Instantiate` that have not been freed and are used by

@@ -29,7 +29,7 @@ impl<M: Model> Instance<M> {
             let name = variable.name;
             if !matches!(variable.access, Access::Input { .. }) {
                 return Err(Fault::error(format!(
-                    "{name} is not an input; derivatives can be set for inputs only"
+                    "{name} is not an input; only inputs can have derivatives set"
                 )));
             }
             check_order(name, order, HIGHEST_DERIVATIVE)?;
@@ -73,7 +73,7 @@ impl<M: Model> Instance<M> {
             let variable = values::row::<M>(reference)?;
             if variable.causality != Causality::Output || derivatives_of(variable).is_none() {
                 return Err(Fault::error(format!(
-                    "{} is not a real output; derivatives can be got for those only",
+                    "{} is not a real output; only real outputs have derivatives with respect to time",
                     variable.name
                 )));
             }
@@ -187,8 +187,8 @@ fn not_known<M: Model>(variable: &Variable<M>) -> Fault {
         .iter()
         .map(|&state| M::VARIABLES[state as usize].name);
     Fault::error(format!(
-        "{} cannot be differentiated by; only real inputs and parameters can, and after \
-         initialization the states {}",
+        "derivatives with respect to {} are not offered; ask for them with respect to real inputs \
+         and parameters, and after initialization with respect to the states {}",
         variable.name,
         states.collect::<Vec<_>>().join(", ")
     ))

@@ -95,7 +95,7 @@ impl<M: Model> Instance<M> {
     fn exchange(&mut self) -> Result<&mut Exchange<M>, Fault> {
         match &mut self.simulation {
             Simulation::Exchange(exchange) => Ok(exchange),
-            _ => Err(Fault::error("the initialization has not been ended".into())),
+            _ => Err(Fault::error("initialization has not ended".into())),
         }
     }
 
@@ -292,6 +292,6 @@ impl<M: Model> Instance<M> {
 
 fn wrong_count(what: &str, given: usize, right: usize) -> Fault {
     Fault::error(format!(
-        "room for {given} {what} was given; there are {right}"
+        "the array is for {given} {what}; the model has {right}"
     ))
 }

@@ -146,19 +146,19 @@ fn during_initialization_start_values_are_known_and_states_are_not() {
             "lambda",
             "lambda",
             1.0,
-            "lambda cannot be differentiated by",
+            "derivatives with respect to lambda are not offered",
         ),
         (
             "lambda",
             "on_pull_in",
             1.0,
-            "on_pull_in cannot be differentiated by",
+            "derivatives with respect to on_pull_in are not offered",
         ),
         (
             "lambda",
             "phi_total",
             1.0,
-            "phi_total cannot be differentiated by",
+            "derivatives with respect to phi_total are not offered",
         ),
         (
             "pull_in_margin",

@@ -44,26 +44,26 @@ def with_fmpy(fmu: str | Path, start_values=START_VALUES) -> Rows:
     from fmpy.fmi2 import FMU2Slave
 
     read, reference = description(fmu)
-    slave = FMU2Slave(
+    instance = FMU2Slave(
         guid=read.guid,
         modelIdentifier=read.coSimulation.modelIdentifier,
         unzipDirectory=fmpy.extract(str(fmu)),
         instanceName="actuator",
     )
-    slave.instantiate()
-    slave.setupExperiment(startTime=0.0)
-    slave.enterInitializationMode()
-    slave.setReal([reference[name] for name in start_values], list(start_values.values()))
-    slave.exitInitializationMode()
+    instance.instantiate()
+    instance.setupExperiment(startTime=0.0)
+    instance.enterInitializationMode()
+    instance.setReal([reference[name] for name in start_values], list(start_values.values()))
+    instance.exitInitializationMode()
     outputs = [reference[name] for name in OUTPUTS]
-    rows = [slave.getReal(outputs)]
+    rows = [instance.getReal(outputs)]
     for step in range(STEPS):
         if step == SWITCH:
-            slave.setReal([reference["phi"]], [PHI_THEN])
-        slave.doStep(step * STEP, STEP)
-        rows.append(slave.getReal(outputs))
-    slave.terminate()
-    slave.freeInstance()
+            instance.setReal([reference["phi"]], [PHI_THEN])
+        instance.doStep(step * STEP, STEP)
+        rows.append(instance.getReal(outputs))
+    instance.terminate()
+    instance.freeInstance()
     return rows
 
 
@@ -71,21 +71,21 @@ def with_fmuloader(fmu: str) -> Rows:
     from fmuloader.fmi2 import Fmi2Slave, Fmi2Type
 
     read, reference = description(fmu)
-    slave = Fmi2Slave(fmu, model_identifier=MODEL)
-    slave.instantiate("actuator", Fmi2Type.CO_SIMULATION, guid=read.guid)
-    slave.setup_experiment(start_time=0.0)
-    slave.enter_initialization_mode()
-    slave.set_real([reference[name] for name in START_VALUES], list(START_VALUES.values()))
-    slave.exit_initialization_mode()
+    instance = Fmi2Slave(fmu, model_identifier=MODEL)
+    instance.instantiate("actuator", Fmi2Type.CO_SIMULATION, guid=read.guid)
+    instance.setup_experiment(start_time=0.0)
+    instance.enter_initialization_mode()
+    instance.set_real([reference[name] for name in START_VALUES], list(START_VALUES.values()))
+    instance.exit_initialization_mode()
     outputs = [reference[name] for name in OUTPUTS]
-    rows = [slave.get_real(outputs)]
+    rows = [instance.get_real(outputs)]
     for step in range(STEPS):
         if step == SWITCH:
-            slave.set_real([reference["phi"]], [PHI_THEN])
-        slave.do_step(step * STEP, STEP)
-        rows.append(slave.get_real(outputs))
-    slave.terminate()
-    slave.free_instance()
+            instance.set_real([reference["phi"]], [PHI_THEN])
+        instance.do_step(step * STEP, STEP)
+        rows.append(instance.get_real(outputs))
+    instance.terminate()
+    instance.free_instance()
     return rows
 
 
@@ -119,9 +119,9 @@ def with_libcosimpy(fmu: str) -> Rows:
 
     _, reference = description(fmu)
     execution = CosimExecution.from_step_size(int(STEP * 1e9))
-    slave = execution.add_local_slave(CosimLocalSlave(fmu, "actuator"))
+    instance = execution.add_local_slave(CosimLocalSlave(fmu, "actuator"))
     for name, value in START_VALUES.items():
-        execution.real_initial_value(slave, reference[name], value)
+        execution.real_initial_value(instance, reference[name], value)
     observer = CosimObserver.create_last_value()
     manipulator = CosimManipulator.create_override()
     execution.add_observer(observer)
@@ -130,10 +130,10 @@ def with_libcosimpy(fmu: str) -> Rows:
     rows = []
     for step in range(STEPS):
         if step == SWITCH:
-            manipulator.slave_real_values(slave, [reference["phi"]], [PHI_THEN])
+            manipulator.slave_real_values(instance, [reference["phi"]], [PHI_THEN])
         if not execution.step():
             raise RuntimeError("CosimExecution.step() gave False")
-        rows.append(observer.last_real_values(slave, outputs))
+        rows.append(observer.last_real_values(instance, outputs))
     # It reads for the first time after the first step.
     return [[math.nan] * len(outputs), *rows]
 
