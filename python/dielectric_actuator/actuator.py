@@ -150,7 +150,7 @@ class Actuator:
                 group.write()
 
     def set_input_derivatives(self, derivatives: Mapping[str, Sequence[float]]) -> None:
-        """Let inputs vary inside the steps to come: for each its first, second, … derivative by time at `time`.
+        """Let inputs vary inside the next steps: for each its first, second, … derivative in time, at `time`.
 
         They hold until the input is set again, so that they are set after its value.
         """
@@ -164,7 +164,7 @@ class Actuator:
                 self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
 
     def output_derivatives(self, name: str, order: int) -> list[float]:
-        """Derivatives of an output by time at the last communication point, from the first to the given order."""
+        """Time derivatives of an output at the last communication point, from order 1 to the given one."""
         if order == 0:
             return []
         references = [self._variables.reference(name)] * order

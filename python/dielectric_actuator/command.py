@@ -30,7 +30,7 @@ THRESHOLDS = {
     "V_pull_in_static": "static pull-in voltage, raised slowly",
     "lambda_snap": "stretch to which it snaps there",
 }
-"""What is printed of those that the actuator has."""
+"""The variables that are printed, where the actuator has them."""
 EXTRAS = {"matplotlib": "plot", "scipy": "fit"}
 """The extra of the package that brings a module."""
 VARIABLES = "Variables of the FMU are options too, by their names: --phi 0.6 --gamma_s 0.05."

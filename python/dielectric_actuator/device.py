@@ -1,4 +1,4 @@
-"""From a device in SI units to the nondimensional model, with the exact derivatives of that way.
+"""From a device in SI units to the nondimensional model, with the exact derivatives of the conversion.
 
 Each nondimensional quantity is a product of powers of those of the device (Eq. 15 of the paper; two surfaces, one
 layer, no losses). The chain rule turns the sensitivities of the one into those of the other.
@@ -36,7 +36,7 @@ PRODUCTS: Mapping[str, tuple[float, Mapping[str, float]]] = {
 """Each nondimensional quantity as a factor and the powers of the device's, which the SI FMU calls by these names."""
 
 NAMES = ("mu", "rho", "eps_r", "H", "L", "gamma_s", "tau_s", "E_s", "force", "lambda_start", "lambda_dot_start")
-"""What a device is given by, and `sensitivities` differentiates by; names, units and start values of the SI FMU."""
+"""The parameters of a device, for `sensitivities` too; names, units and start values are those of the SI FMU."""
 
 TYPICAL: Mapping[str, float] = {"gamma_s": 0.02, "tau_s": 0.02, "E_s": 0.1, "force": 1e-3, "lambda_dot_start": 1e4}
 """The size of what may be 0, in SI units, so that a fit may begin there."""
@@ -94,7 +94,7 @@ def sensitivities(
 
 
 def observe(quantity: str, device: Mapping[str, float], stretch: Floats, slopes: Floats) -> tuple[Floats, Floats]:
-    """A quantity that the SI FMU calls so, and its derivatives by `NAMES`, from those of the stretch."""
+    """A quantity by its name in the SI FMU, and its derivatives with respect to `NAMES`, from those of the stretch."""
     side, thickness = (float(device.get(name, limits()[name][0])) for name in ("L", "H"))
     slopes = slopes.copy()
     if quantity == "thickness":

@@ -33,7 +33,7 @@ _CHECKOUT = Path(__file__).resolve().parents[2] / "target" / "fmu"
 def packed_fmu(model: str = "nondimensional") -> Path:
     """Path of the packed FMU of one of `MODELS`: that of the installed package, or in a checkout ``target/fmu``.
 
-    Raises `UnknownName` for a model that there is not.
+    Raises `UnknownName` for an unknown model.
     """
     if model not in MODELS:
         raise UnknownName("actuator", model, MODELS)
@@ -44,7 +44,7 @@ def packed_fmu(model: str = "nondimensional") -> Path:
 def located(fmu: str | Path) -> Path:
     """The path of an FMU that is given as one, or by the name of one of `MODELS`.
 
-    Raises FileNotFoundError where there is none, `UnknownName` for a name that there is not.
+    Raises FileNotFoundError where there is none, `UnknownName` for an unknown name.
     """
     named = isinstance(fmu, str) and not Path(fmu).suffix
     path = packed_fmu(str(fmu)) if named else Path(fmu)
@@ -54,7 +54,7 @@ def located(fmu: str | Path) -> Path:
 
 
 class UnknownName(KeyError):
-    """A name that there is not; the message suggests those that are spelt alike."""
+    """An unknown name; the message suggests names with a similar spelling."""
 
     def __init__(self, kind: str, name: str, known: Iterable[str]):
         known = list(known)

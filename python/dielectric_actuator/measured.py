@@ -46,7 +46,7 @@ def _number(row: list[str], place: int, name: str, number: int) -> float:
 def check(
     time: ArrayLike, columns: Mapping[str, ArrayLike], *, clock: str = "time"
 ) -> tuple[Floats, dict[str, Floats]]:
-    """The time and the columns as arrays; what is said of them counts rows from 1 and calls the time `clock`.
+    """The time and the columns as arrays; messages count rows from 1 and call the time `clock`.
 
     Raises ValueError where columns differ in length, a value is no finite number, or the time does not increase.
     """

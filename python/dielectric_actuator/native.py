@@ -72,14 +72,14 @@ def _library() -> ctypes.CDLL:
 
 @functools.cache
 def scene_names() -> tuple[str, ...]:
-    """Names of the variables that a scene of an ensemble is given by; the same as the FMU's."""
+    """Names of the variables that make up a scene of an ensemble; they are those of the FMU."""
     return tuple(_library().dea_scene_names().decode().split())
 
 
 @functools.cache
 def known_names() -> tuple[str, ...]:
-    """Names of what `sensitivities` differentiates by: parameters and start as the FMU calls them, the prestress
-    ``S``, and the factors ``phi_scale`` and ``time_scale`` of the given voltage and times."""
+    """What `sensitivities` differentiates with respect to: parameters and start by their names in the FMU, the
+    prestress ``S``, and the factors ``phi_scale`` and ``time_scale`` of the given voltage and times."""
     return tuple(_library().dea_known_names().decode().split())
 
 
@@ -100,7 +100,7 @@ def limits() -> dict[str, tuple[float, float, float]]:
 
 
 def _column(name: str, values: Floats) -> Floats:
-    """The values of a column; ValueError with the row, counted from 1, of one that is no number or out of range."""
+    """The values of a column; ValueError with the row, counted from 1, where a value is NaN or out of range."""
     _, lowest, highest = limits()[name]
     bad = np.flatnonzero(~((lowest <= values) & (values <= highest) & np.isfinite(values)))
     if bad.size:
@@ -127,7 +127,7 @@ def ensemble(
     same of ``lambda3``, ``pulled_in`` and ``pull_in_time`` (+inf where it was not). Where the integration
     cannot go on the numbers are NaN. `progress` is called with the number of scenes done and that of all.
 
-    Raises `UnknownName` for a column that is none, ValueError with row and column for a value that is no number or
+    Raises `UnknownName` for a column with an unknown name, ValueError with row and column for a value that is NaN or
     out of range.
     """
     names = scene_names()
@@ -220,7 +220,7 @@ def sensitivities(
 
 
 def _ramps(time: Floats, voltage: Floats, interpolation: str) -> Floats:
-    """Rows of time, voltage and slope; one that goes on as the one before is left out."""
+    """Rows of time, voltage and slope; a row that continues the line of the row before is left out."""
     slopes = np.zeros(len(time))
     if interpolation == "linear":
         slopes[:-1] = np.diff(voltage) / np.diff(time)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
-"""Those of Okabe and Ito (2008), which survive colour blindness, without the yellow that vanishes on white paper."""
+"""The colours of Okabe and Ito (2008) for colour-blind readers, without yellow, which is faint on white."""
 
 NONDIMENSIONAL: Mapping[str, str] = {
     "time": r"time  $\bar{t}$",

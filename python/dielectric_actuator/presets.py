@@ -74,7 +74,7 @@ def names(model: str | None = None) -> list[str]:
 def load(name: str | Path) -> Preset:
     """A preset of the package by its name, or one of a file by a path that ends in ``.json``.
 
-    Raises `UnknownName` for a name that there is not, ValueError for a file that holds no preset.
+    Raises `UnknownName` for an unknown name, ValueError for a file that holds no preset.
     """
     if str(name).endswith(".json"):
         text = Path(name).read_text(encoding="utf-8")
