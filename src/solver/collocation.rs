@@ -1,4 +1,4 @@
-//! One substep of Gauss collocation with 2P nodes, order 4P at its end.
+//! One substep of Gauss collocation with 16 nodes, order 32 at its end.
 //!
 //! Origin: J. C. Butcher, "Implicit Runge–Kutta processes", Math. Comp. 18
 //! (1964) 50–64. The stages are solved by fixed-point (Picard) iteration, which
@@ -7,8 +7,8 @@
 //!
 //! Accuracy: the end of a substep superconverges; between, the polynomial has
 //! the error of interpolating f, estimated by the end of its Legendre series.
-//! The stages of a coupled system ([`super::coupled::stages`]) can follow this motion too. Here nodes are
-//! folded into pairs, and nothing is kept of states and integrals.
+//! [`super::coupled::stages`] solves the same stages for systems with further states. This kernel is
+//! faster where there are none: nodes are folded into pairs.
 //!
 //! No arithmetic depends on the number of lanes, so that every SIMD level with
 //! a fused multiply-add gives the same bits.
@@ -18,7 +18,7 @@ use std::ops::RangeInclusive;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
 use super::iteration::{Diverged, IterationTolerance};
-use super::tables::{Columns, PAIRED_16, Pairs};
+use super::tables::{Columns, PAIRED_16, PAIRS};
 use super::{LocalEquation, State};
 use crate::arithmetic::lanes::Lanes;
 use crate::arithmetic::number::Number;
@@ -30,22 +30,22 @@ const NEGLECTED_AT_END: f64 = 1000.0;
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.
 #[derive(Clone, Copy, Debug)]
-pub struct Series<const P: usize> {
+pub struct Series {
     /// Half the length of the substep.
     pub half: f64,
     /// half² · (a_0, a_2, …).
-    pub even: [f64; P],
+    pub even: [f64; PAIRS],
     /// half² · (a_1, a_3, …).
-    pub odd: [f64; P],
+    pub odd: [f64; PAIRS],
 }
 
 /// A substep that has been solved.
 #[derive(Clone, Copy, Debug)]
-pub struct Substep<const P: usize> {
+pub struct Substep {
     /// The state at its end.
     pub end: State,
     /// f over it.
-    pub series: Series<P>,
+    pub series: Series,
     /// Largest position at a node.
     pub highest: f64,
     /// Smallest position at a node.
@@ -54,16 +54,16 @@ pub struct Substep<const P: usize> {
     pub contraction: f64,
 }
 
-impl<const P: usize> Substep<P> {
+impl Substep {
     /// The size of the last two coefficients of f, in units of the position:
     /// what is neglected after them is smaller.
     #[must_use]
     pub fn tail(&self) -> f64 {
-        self.series.even[P - 1].abs() + self.series.odd[P - 1].abs()
+        self.series.even[PAIRS - 1].abs() + self.series.odd[PAIRS - 1].abs()
     }
 
-    /// Estimate of the error at the end. A Legendre series that falls geometrically reaches at degree 4P,
-    /// the first that is integrated wrongly, the square of what it has at degree 2P, by its size.
+    /// Estimate of the error at the end. Degree 32 is the first that is integrated wrongly. A Legendre
+    /// series that falls geometrically has there the square of what it has at degree 16, over its size.
     #[must_use]
     pub fn end_error(&self) -> f64 {
         let Series { even, odd, .. } = &self.series;
@@ -90,16 +90,16 @@ impl<const P: usize> Substep<P> {
 
 /// A first guess of f over a substep.
 #[derive(Clone, Copy, Debug)]
-pub enum Guess<'a, const P: usize> {
+pub enum Guess<'a> {
     /// It goes on as in the substep before.
-    Before(&'a Series<P>),
+    Before(&'a Series),
     /// It keeps this value, which it has at the begin.
     Begin(f64),
 }
 
 /// What a substep is asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Task<'a, const P: usize> {
+pub struct Task<'a> {
     /// The state at its begin.
     pub start: State,
     /// Its length.
@@ -107,9 +107,7 @@ pub struct Task<'a, const P: usize> {
     /// When the iteration ends.
     pub tolerance: IterationTolerance,
     /// What f is taken for at first.
-    pub guess: Guess<'a, P>,
-    /// The contraction that is expected; 1 where nothing is known.
-    pub contraction: f64,
+    pub guess: Guess<'a>,
 }
 
 /// `Σ_j column[j] · value[j]`, in a fixed order.
@@ -149,18 +147,17 @@ fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
 pub fn solve_by_16<L: LocalEquation>(
     level: Level,
     equation: &L,
-    task: &Task<8>,
-) -> Result<Substep<8>, Diverged> {
-    dispatch!(level, simd => solve::<_, f64x8<_>, L, 8>(simd, &PAIRED_16, equation, task))
+    task: &Task,
+) -> Result<Substep, Diverged> {
+    dispatch!(level, simd => solve(simd, equation, task))
 }
 
 #[inline(always)]
-fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
+fn solve<S: Simd, L: LocalEquation>(
     simd: S,
-    tables: &Pairs<P>,
     equation: &L,
-    task: &Task<P>,
-) -> Result<Substep<P>, Diverged> {
+    task: &Task,
+) -> Result<Substep, Diverged> {
     let &Task {
         start,
         length,
@@ -169,7 +166,8 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
     } = task;
     let half = 0.5 * length;
     let square = half * half;
-    let node = V::load(simd, &tables.node);
+    let tables = &PAIRED_16;
+    let node: f64x8<S> = Lanes::load(simd, &tables.node);
     let splat = |value: f64| node.same(value);
 
     let load_right = equation.load(node.mul_add(splat(half), splat(half)));
@@ -216,10 +214,10 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
         let differences = (f[0] - f[1]).store();
         let mean = dot(&tables.mean, &sums);
         let tilt = dot(&tables.tilt, &differences);
-        let once_odd: V = product(simd, &tables.once_from_sums, &sums);
-        let once_even: V = product(simd, &tables.once_from_differences, &differences);
-        let twice_even: V = product(simd, &tables.twice_from_sums, &sums);
-        let twice_odd: V = product(simd, &tables.twice_from_differences, &differences);
+        let once_odd: f64x8<S> = product(simd, &tables.once_from_sums, &sums);
+        let once_even: f64x8<S> = product(simd, &tables.once_from_differences, &differences);
+        let twice_even: f64x8<S> = product(simd, &tables.twice_from_sums, &sums);
+        let twice_odd: f64x8<S> = product(simd, &tables.twice_from_differences, &differences);
 
         let rate = once_even.mul_add(splat(half), splat(start.rate + half * mean));
         let rate_odd = once_odd * splat(half);
@@ -230,7 +228,7 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
             splat(middle) + drift + bent[0],
             splat(middle) - drift + bent[1],
         ];
-        // Of what f adds, since in a short substep the position would round it away.
+        // The change of what f adds: the whole position would round it away in a short substep.
         let change = (bent[0] - old[0])
             .abs()
             .max((bent[1] - old[1]).abs())
@@ -240,7 +238,7 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
         if iterations > 1 {
             let ratio = change / last_change;
             let expected = if ratio.is_nan() {
-                task.contraction
+                1.0
             } else {
                 contraction.max(ratio)
             };
@@ -265,8 +263,8 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
                 if !(end.position.is_finite() && end.rate.is_finite() && lowest.is_finite()) {
                     return Err(Diverged);
                 }
-                let even: V = product(simd, &tables.series_from_sums, &sums);
-                let odd: V = product(simd, &tables.series_from_differences, &differences);
+                let even: f64x8<S> = product(simd, &tables.series_from_sums, &sums);
+                let odd: f64x8<S> = product(simd, &tables.series_from_differences, &differences);
                 let series = Series {
                     half,
                     even: (even * splat(square)).store(),
@@ -291,7 +289,7 @@ fn solve<S: Simd, V: Lanes<S, P>, L: LocalEquation, const P: usize>(
 
 /// f of a substep continued to u.
 #[inline(always)]
-fn continued<N: Number, const P: usize>(series: &Series<P>, u: N) -> N {
+fn continued<N: Number>(series: &Series, u: N) -> N {
     let size = 1.0 / (series.half * series.half);
     let coefficient = |degree: usize| {
         let half = if degree.is_multiple_of(2) {
@@ -301,7 +299,7 @@ fn continued<N: Number, const P: usize>(series: &Series<P>, u: N) -> N {
         };
         u.same(half[degree / 2])
     };
-    clenshaw::<N, P>(u, coefficient) * u.same(size)
+    clenshaw::<N, PAIRS>(u, coefficient) * u.same(size)
 }
 
 /// A Legendre series of degree 2P − 1 at u, by Clenshaw's summation.

@@ -7,12 +7,10 @@ use serde::{Deserialize, Serialize};
 use super::State;
 use super::collocation::Series;
 use super::position_origin::PositionOrigin;
+pub use super::tables::PAIRS;
 use super::tables::{Columns, PAIRED_16};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::roots::crossing;
-
-/// Node pairs of the method whose segments are kept.
-pub const PAIRS: usize = 8;
 
 /// Number of coefficients: the twice integrated polynomial of degree 15.
 const TERMS: usize = 2 * PAIRS + 2;
@@ -48,7 +46,7 @@ pub struct Segment {
 impl Segment {
     /// The motion from `start` to `end` with f given by its series.
     #[must_use]
-    pub fn new(start: State, end: State, f: &Series<PAIRS>) -> Segment {
+    pub fn new(start: State, end: State, f: &Series) -> Segment {
         Segment {
             half: f.half,
             start,
@@ -62,7 +60,7 @@ impl Segment {
     }
 
     /// f over the substep.
-    pub fn series(&self) -> Series<PAIRS> {
+    pub fn series(&self) -> Series {
         Series {
             half: self.half,
             even: self.even,

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::collocation::product;
 use super::step_control::{StepControl, UNSEEN};
-use super::tables::GAUSS_4;
+use super::tables::{ENDS_4, GAUSS_4};
 use super::{Equation, LocalEquation, Sensitivity, State};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::lanes::Lanes;
@@ -285,12 +285,12 @@ fn solve<S: Simd, L: LocalEquation>(
     let sine = if local.load_frequency() == 0.0 {
         0.0
     } else {
-        let ends: f64x4<S> = product(simd, &GAUSS_4.end, &sine.store());
+        let ends: f64x4<S> = product(simd, &ENDS_4, &sine.store());
         let [_, _, end, _] = Lanes::<S, 4>::store(ends);
         end
     };
     let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
-    let added: f64x4<S> = product(simd, &GAUSS_4.end, &f);
+    let added: f64x4<S> = product(simd, &ENDS_4, &f);
     let weight: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
     let drift: f64x4<S> = Lanes::load(simd, &[length * start.rate, 0.0, 0.0, 0.0]);
     let from: f64x4<S> = Lanes::load(simd, &[start.position, start.rate, 0.0, 0.0]);

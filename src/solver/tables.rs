@@ -28,7 +28,7 @@ use crate::arithmetic::double_double::DoubleDouble;
 
 mod paired;
 
-pub use paired::{GAUSS_4, PAIRED_16, Pairs};
+pub use paired::{PAIRED_16, PAIRS};
 
 /// Nodes of the largest method.
 const MOST_NODES: usize = 16;
@@ -64,6 +64,11 @@ pub struct Rule<const N: usize> {
     pub series: Columns<N>,
 }
 
+/// Gauss nodes, 4 of them.
+pub static GAUSS_4: Rule<4> = Rule::of(&Exact::gauss());
+/// From f at these nodes: the twice and the once integrated f at the end, f itself at the end and at
+/// the begin.
+pub static ENDS_4: Columns<4> = ends(&Exact::gauss());
 /// Gauss nodes, 8 of them.
 pub static GAUSS_8: Rule<8> = Rule::of(&Exact::gauss());
 /// Gauss nodes, 16 of them.
@@ -191,6 +196,25 @@ const fn rounded<const N: usize>(exact: &[[DoubleDouble; N]; N]) -> Columns<N> {
     columns
 }
 
+const fn ends(exact: &Exact<4>) -> Columns<4> {
+    let mut columns = [[0.0; 4]; 4];
+    let mut j = 0;
+    while j < 4 {
+        // Legendre polynomials are 1 at the end, and 1 or −1 at the begin.
+        let [zeroth, first, second, third] = exact.series[j];
+        let tilt = first.div(DoubleDouble::new(3.0));
+        let (even, odd) = (zeroth.add(second), first.add(third));
+        columns[j] = [
+            zeroth.sub(tilt).scale(2.0).value(),
+            zeroth.scale(2.0).value(),
+            even.add(odd).value(),
+            even.sub(odd).value(),
+        ];
+        j += 1;
+    }
+    columns
+}
+
 /// Σ a_k b_k.
 pub(super) const fn dot(a: &[DoubleDouble], b: &[DoubleDouble]) -> DoubleDouble {
     let (mut sum, mut k) = (DoubleDouble::ZERO, 0);
@@ -297,6 +321,7 @@ mod tests {
     /// f(u) = (1 + u)ⁿ: once and twice integrated at the nodes, and the mean, by hand.
     #[test]
     fn powers_below_the_number_of_nodes_are_integrated_exactly() {
+        check(&GAUSS_4, 4);
         check(&GAUSS_8, 8);
         check(&GAUSS_16, 16);
         // The rate, of a degree more, is taken from its values at the nodes.
@@ -323,6 +348,21 @@ mod tests {
             }
             let mean = apply(&rule.series, 0);
             assert!((mean - size / order).abs() < 4e-15 * size, "{n}");
+        }
+    }
+
+    /// f(u) = (1 + u)ⁿ.
+    #[test]
+    fn four_nodes_lead_to_the_ends() {
+        for n in 0..4 {
+            let values = GAUSS_4.place.map(|place| place.powi(n));
+            let (order, next) = (f64::from(n + 1), f64::from(n + 2));
+            let once = 2.0_f64.powi(n + 1) / order;
+            let expected = [2.0 * once / next, once, 2.0_f64.powi(n), 0.0_f64.powi(n)];
+            for (row, expected) in expected.into_iter().enumerate() {
+                let end: f64 = (0..4).map(|j| ENDS_4[j][row] * values[j]).sum();
+                assert!((end - expected).abs() < 8e-15, "{n}, {row}");
+            }
         }
     }
 

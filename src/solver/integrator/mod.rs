@@ -87,7 +87,7 @@ impl<L> Mode<L> {
 }
 
 /// Where the present lies.
-pub enum Place<'a, O> {
+pub enum Present<'a, O> {
     /// At the start.
     Start,
     /// Inside a step, at this offset after its begin.
@@ -181,10 +181,10 @@ impl<M: Method> Integrator<M> {
     /// The present position, counted from the origin that is returned with it.
     #[must_use]
     pub fn position_from_origin(&self) -> (M::Origin, f64) {
-        match self.place() {
-            Place::Start => (self.position_origin, self.start.position),
-            Place::Inside(step, offset) => (step.origin, step.segment.position(offset)),
-            Place::End(step) => (step.origin, step.segment.end().position),
+        match self.present() {
+            Present::Start => (self.position_origin, self.start.position),
+            Present::Inside(step, offset) => (step.origin, step.segment.position(offset)),
+            Present::End(step) => (step.origin, step.segment.end().position),
         }
     }
 
@@ -192,10 +192,10 @@ impl<M: Method> Integrator<M> {
     #[must_use]
     pub fn rate(&self) -> f64 {
         self.mode.direction()
-            * match self.place() {
-                Place::Start => self.start.rate,
-                Place::Inside(step, offset) => step.segment.rate(offset),
-                Place::End(step) => step.segment.end().rate,
+            * match self.present() {
+                Present::Start => self.start.rate,
+                Present::Inside(step, offset) => step.segment.rate(offset),
+                Present::End(step) => step.segment.end().rate,
             }
     }
 
@@ -208,16 +208,16 @@ impl<M: Method> Integrator<M> {
         }
     }
 
-    pub(super) fn place(&self) -> Place<'_, M::Origin> {
+    pub(super) fn present(&self) -> Present<'_, M::Origin> {
         if self.history.is_empty() || self.now == DoubleDouble::ZERO {
-            return Place::Start;
+            return Present::Start;
         }
         let step = &self.history.steps()[self.index];
         let offset = self.now.since(step.begin);
         if offset == step.segment.length() {
-            Place::End(step)
+            Present::End(step)
         } else {
-            Place::Inside(step, offset)
+            Present::Inside(step, offset)
         }
     }
 

@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::collocation::{Guess, Substep, Task, solve_by_16};
-use super::dense_output::{History, PAIRS, Segment};
+use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps, Way};
 use super::extremes::Extremes;
 use super::integrator::{Integrator, Method, Mode};
@@ -329,7 +329,7 @@ impl Trajectory {
         state: State,
         [repeats, only_end]: [bool; 2],
         most: f64,
-    ) -> Result<Substep<PAIRS>, f64> {
+    ) -> Result<Substep, f64> {
         let control = self.step_control(repeats);
         let scale = state.position.abs();
         let time_scale = local.time_scale(state);
@@ -354,7 +354,6 @@ impl Trajectory {
                     Some(before) => Guess::Before(before),
                     None => Guess::Begin(local.acceleration_from(state)),
                 },
-                contraction: 1.0,
             };
             let step = solve_by_16(self.level, local, &task).map_err(|Diverged| HALVED)?;
             if self.limits.are_left_behind_by(step.nodes()) {

@@ -4,15 +4,15 @@ use super::{Carried, Trajectory};
 use crate::solver::coupled::polynomials::{Coefficients, Polynomials, sum};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
-use crate::solver::integrator::{Method, Place};
+use crate::solver::integrator::{Method, Present};
 
 impl Trajectory {
     /// The present first-order states.
     #[must_use]
     pub fn internal(&self) -> [f64; MOST_STATES] {
-        match (self.place(), &self.method.polynomials) {
-            (Place::Inside(_, offset), Some(polynomials)) => polynomials.internal(offset),
-            (Place::End(_), Some(polynomials)) => polynomials.end.internal,
+        match (self.present(), &self.method.polynomials) {
+            (Present::Inside(_, offset), Some(polynomials)) => polynomials.internal(offset),
+            (Present::End(_), Some(polynomials)) => polynomials.end.internal,
             _ => self.method.internal,
         }
     }
@@ -22,19 +22,19 @@ impl Trajectory {
     #[must_use]
     pub fn slopes(&self) -> Option<[f64; MOST_STATES]> {
         let polynomials = self.method.polynomials.as_ref()?;
-        Some(polynomials.slopes(match self.place() {
-            Place::Start => 0.0,
-            Place::Inside(_, offset) => offset,
-            Place::End(_) => 2.0 * polynomials.half,
+        Some(polynomials.slopes(match self.present() {
+            Present::Start => 0.0,
+            Present::Inside(_, offset) => offset,
+            Present::End(_) => 2.0 * polynomials.half,
         }))
     }
 
     /// The present integrals.
     #[must_use]
     pub fn integrals(&self) -> [f64; MOST_INTEGRALS] {
-        match (self.place(), &self.method.polynomials) {
-            (Place::Inside(_, offset), Some(polynomials)) => polynomials.integrals(offset),
-            (Place::End(_), Some(polynomials)) => polynomials.end.integrals,
+        match (self.present(), &self.method.polynomials) {
+            (Present::Inside(_, offset), Some(polynomials)) => polynomials.integrals(offset),
+            (Present::End(_), Some(polynomials)) => polynomials.end.integrals,
             _ => self.method.integrals,
         }
     }

@@ -7,7 +7,7 @@ use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
 use crate::solver::coupled::stages::{self, Iteration, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
-use crate::solver::dense_output::{PAIRS, Segment};
+use crate::solver::dense_output::Segment;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};
@@ -282,7 +282,7 @@ fn stands<L: LocalCoupledEquation>(local: &L, start: &FullState, states: usize) 
 }
 
 /// x'' as the segment takes it.
-fn motion_series(step: &Step) -> Series<PAIRS> {
+fn motion_series(step: &Step) -> Series {
     let Slopes { half, motion, .. } = step.series;
     let square = half * half;
     Series {
