@@ -106,7 +106,7 @@ def sweep(
             for future in heartbeats.as_completed(list(batches)):
                 numbers, rows = batches.pop(future)
                 try:
-                    found = future.result(timeout=patience)
+                    found = heartbeats.result(future)
                 except (Exception, CancelledError) as reason:  # whatever lost one batch, the others go on
                     heartbeats.check()
                     lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {reason or type(reason).__name__}")
@@ -125,7 +125,7 @@ class Heartbeats:
     def __init__(self, client: Client, patience: float):
         self._client, self._patience = client, patience
         self._heard: dict[str, float] = {}
-        self._last = time.monotonic()
+        self._silent_since: float | None = None
 
     def bounded(self, coroutine: Callable[..., Any], *arguments: object) -> Any:
         """What `coroutine` returns; Unfinished if the cluster does not answer in time."""
@@ -138,17 +138,22 @@ class Heartbeats:
             ) from None
 
     def workers(self) -> int:
-        """How many workers the scheduler knows; notes which have been heard of since the last call."""
+        """How many workers the scheduler knows; notes whether one has been heard of since the last look."""
         heard = self.bounded(_last_seen, self._client)
         if any(self._heard.get(worker) != moment for worker, moment in heard.items()):
-            self._last = time.monotonic()
+            self._silent_since = None
+        elif self._silent_since is None:
+            # Not since the last look: a busy machine may have kept us from looking.
+            self._silent_since = time.monotonic()
         self._heard = heard
         return len(heard)
 
     def check(self) -> None:
         """Unfinished if no worker has been heard of for too long."""
         workers = self.workers()
-        if (silence := time.monotonic() - self._last) > self._patience:
+        if self._silent_since is None:
+            return
+        if (silence := time.monotonic() - self._silent_since) > self._patience:
             raise Unfinished(
                 f"none of {workers} workers has been heard of for {silence:.0f} s; what is done is kept, run again to "
                 "go on from there"
@@ -168,6 +173,23 @@ class Heartbeats:
             else:
                 returned += 1
                 yield future
+
+    def result(self, future: Future) -> Any:
+        """What a task that was done has returned, or what it raised.
+
+        If its worker died with the result, another one runs it again: that may take as long as there are signs of life.
+        TimeoutError if a result that is there cannot be fetched in time.
+        """
+        given_up = time.monotonic() + self._patience
+        while True:
+            try:
+                return future.result(timeout=self._patience / 4)
+            except TimeoutError:
+                if future.status == "error" or (future.status == "finished" and time.monotonic() > given_up):
+                    raise
+                if future.status != "finished":
+                    given_up = time.monotonic() + self._patience
+                self.check()
 
 
 async def _last_seen(client: Client) -> dict[str, float]:

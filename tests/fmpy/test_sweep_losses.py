@@ -61,6 +61,53 @@ def test_a_loss_ends_the_sweep_in_time_with_what_is_done_kept(fmu_path, tmp_path
     assert table["twice"].to_pylist() == (2 * columns["phi"]).tolist()
 
 
+class ScriptedFuture:
+    """A future that was done and whose worker died twice before its result was fetched."""
+
+    def __init__(self, *statuses):
+        self._statuses = list(statuses)
+        self.status = "finished"
+
+    def result(self, timeout):
+        self.status = self._statuses.pop(0)
+        if self.status == "finished":
+            return ["a row"]
+        time.sleep(timeout)
+        raise TimeoutError
+
+
+class ScriptedClient:
+    """A client whose scheduler tells of the given workers, one answer a look; the last answer stays."""
+
+    def __init__(self, *answers):
+        self._answers = list(answers)
+
+    def sync(self, coroutine, *arguments, callback_timeout):
+        return self._answers.pop(0) if len(self._answers) > 1 else self._answers[0]
+
+
+def test_a_result_that_died_with_its_worker_is_waited_for():
+    """No worker is there when one looks, and one looks late: the next has its time to start."""
+    heartbeats = engine.Heartbeats(ScriptedClient({"first": 1.0}, {}, {}, {"second": 2.0}, {}), patience=0.4)
+    time.sleep(0.5)
+    assert heartbeats.result(ScriptedFuture("lost", "pending", "lost", "pending", "finished")) == ["a row"]
+    with pytest.raises(engine.Unfinished, match="none of 0 workers"):
+        heartbeats.result(ScriptedFuture(*["pending"] * 10))
+
+
+def test_a_result_that_cannot_be_fetched_is_given_up():
+    class Unreachable:
+        status = "finished"
+
+        def result(self, timeout):
+            time.sleep(timeout)
+            raise TimeoutError
+
+    alive = ScriptedClient(*({"worker": float(second)} for second in range(100)))
+    with pytest.raises(TimeoutError):
+        engine.Heartbeats(alive, patience=0.4).result(Unreachable())
+
+
 def test_a_cluster_without_workers_or_scheduler_is_reported(fmu_path, tmp_path):
     def run(address, patience):
         columns, output = grid(phi=[0.1]), tmp_path / "none.parquet"
