@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::plan::NODES;
-use crate::solver::step_control::factor;
+use crate::solver::step_control::{StepControl, factor};
 
 /// Order of the error at the end of a step.
 pub const ORDER: f64 = 2.0 * NODES as f64;
@@ -17,6 +17,19 @@ const CALM: u32 = 8;
 const TOO_LONG: f64 = 0.96;
 const TOO_SHORT: f64 = 1.25;
 
+/// The first step in units of the motion's time scale at a tolerance of 1e-12, and at most.
+const FIRST_AT_TIGHT_TOLERANCE: f64 = 1.5;
+const LONGEST_FIRST: f64 = 2.0;
+
+/// By how much steps may grow at once.
+const MOST_GROWTH: f64 = 3.0;
+
+/// How long a step may be of which only the time scale of the motion is known, and the tolerance.
+pub fn first(time_scale: f64, control: StepControl) -> f64 {
+    let by_tolerance = FIRST_AT_TIGHT_TOLERANCE * factor(1e-12 / control.tolerance, ORDER);
+    time_scale * by_tolerance.min(LONGEST_FIRST)
+}
+
 /// The worst of the steps since the length was looked at: its error as a part of what is allowed,
 /// and its contraction.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -24,6 +37,8 @@ pub struct Seen {
     pub steps: u32,
     pub error: f64,
     pub contraction: f64,
+    /// Steps after which their length is looked at.
+    due: u32,
 }
 
 impl Seen {
@@ -31,11 +46,18 @@ impl Seen {
         steps: 0,
         error: 0.0,
         contraction: 0.0,
+        due: CALM,
+    };
+
+    /// Nothing, of steps whose length is still to be found: each is looked at.
+    pub const BEGIN: Seen = Seen {
+        due: 1,
+        ..Seen::NOTHING
     };
 
     /// Whether the numbers can be those of steps.
     pub fn is_valid(&self) -> bool {
-        self.error >= 0.0 && self.contraction >= 0.0 && self.steps <= CALM
+        self.error >= 0.0 && self.contraction >= 0.0 && self.steps <= self.due && self.due <= CALM
     }
 
     /// By which factor steps may be longer.
@@ -45,20 +67,47 @@ impl Seen {
     }
 
     /// After enough steps of this `length`, how long they should be from now on if that is another
-    /// length than is `wanted`, which they have when the way allows it.
+    /// length than is `wanted`, which they have when the way allows it. The first ones grow at once.
     #[inline(always)]
     pub fn another_length(&mut self, length: f64, wanted: f64) -> Option<f64> {
-        if self.steps < CALM {
+        if self.steps < self.due {
             return None;
         }
-        let next = self.factor() * length;
+        let next = (self.factor() * length).min(MOST_GROWTH * length);
+        let due = self.due;
         *self = Seen::NOTHING;
-        if next < TOO_LONG * length {
+        if next > TOO_SHORT * wanted {
+            self.due = due;
             Some(next)
-        } else if next > TOO_SHORT * wanted {
-            Some(next.min(2.0 * length).max(wanted))
+        } else if next < TOO_LONG * length || due < CALM && next > wanted {
+            Some(next)
         } else {
             None
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first ones threefold at most, after each step; once they fit, after enough of them.
+    #[test]
+    fn the_first_steps_grow_at_once_and_later_ones_seldom() {
+        let step = |seen: &mut Seen, error: f64, length: f64| {
+            seen.error = seen.error.max(error);
+            seen.steps += 1;
+            seen.another_length(length, length)
+        };
+        let mut seen = Seen::BEGIN;
+        assert_eq!(step(&mut seen, 1e-20, 1.0), Some(3.0));
+        let grown = step(&mut seen, 1e-3, 3.0).expect("a longer one");
+        assert!(3.0 * TOO_SHORT < grown && grown < 4.5, "{grown}");
+        // A fifth of what is allowed fits.
+        assert_eq!(step(&mut seen, 0.2, grown), None);
+        for _ in 1..CALM {
+            assert_eq!(step(&mut seen, 1e-20, grown), None);
+        }
+        assert_eq!(step(&mut seen, 1e-20, grown), Some(3.0 * grown));
     }
 }

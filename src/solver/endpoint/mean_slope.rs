@@ -14,6 +14,8 @@ const AVERAGED: f64 = 16.0;
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MeanSlope {
     pub value: f64,
+    /// By how much the states differ from it, in the mean.
+    pub spread: f64,
     states: f64,
 }
 
@@ -21,6 +23,7 @@ impl MeanSlope {
     /// Of no state yet.
     pub const UNKNOWN: MeanSlope = MeanSlope {
         value: 0.0,
+        spread: 0.0,
         states: 0.0,
     };
 
@@ -30,7 +33,9 @@ impl MeanSlope {
 
     /// Whether the numbers can be those of states.
     pub fn is_valid(&self) -> bool {
-        self.value.is_finite() && (0.0..=AVERAGED).contains(&self.states)
+        self.value.is_finite()
+            && (0.0..f64::INFINITY).contains(&self.spread)
+            && (0.0..=AVERAGED).contains(&self.states)
     }
 
     /// Takes these positions under this load too.
@@ -46,6 +51,11 @@ impl MeanSlope {
         let slope = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
         let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
         self.states = (self.states + 1.0).min(AVERAGED);
+        if self.states > 1.0 {
+            let off = (slope - self.value).abs();
+            let next = self.spread + (off - self.spread) / self.states;
+            self.spread = if next.is_finite() { next } else { 0.0 };
+        }
         let next = self.value + (slope - self.value) / self.states;
         // The first one counts alone.
         let next = if self.states == 1.0 { slope } else { next };

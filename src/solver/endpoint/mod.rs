@@ -47,8 +47,15 @@ const RENEWED: f64 = 16.0;
 /// Steps whose sum is off by less than this part of one are those of the last plan.
 const SAME: f64 = 1e-9;
 
-/// A slope that is off by this, times the square of half the length, is replaced.
+/// A slope is replaced that is off by more than this, over the square of half the length, and more than
+/// this many times what it differs by from step to step: there an exact mean is of little use, and of less
+/// for a length that may not come again.
 const SLOPE_OFF: f64 = 0.04;
+const SPREADS_OFF: f64 = 0.5;
+const SPREADS_OFF_ONCE: f64 = 2.0;
+
+/// A way shorter than this part of a step is left to steps with dense output, one of which may serve several.
+const SHORT_WAY: f64 = 0.5;
 
 /// Fewer steps do not pay for the matrices of a slope, unless they come again.
 const FEW: f64 = 3.0;
@@ -89,15 +96,15 @@ impl EndpointSteps {
             product: 0.0,
             before: None,
             iterations: FIRST_ITERATIONS,
-            seen: Seen::NOTHING,
+            seen: Seen::BEGIN,
             slope: MeanSlope::UNKNOWN,
             plan: Some(Box::default()),
         }
     }
 
-    /// Whether the way to go is longer than a step.
+    /// Whether the way to go is too long for steps with dense output: they are shorter.
     pub fn are_shorter_than(&self, rest: f64) -> bool {
-        self.length.is_none_or(|length| length < rest)
+        self.length.is_none_or(|length| SHORT_WAY * length < rest)
     }
 
     /// Whether so many of them, as far as is known, reach so far.
@@ -161,7 +168,9 @@ impl EndpointSteps {
         let mut local = equation.at(&way.time());
         let time_scale = 1.0 / local.natural_frequency(way.state);
         let rest = way.target.since(way.now);
-        let wanted = *self.length.get_or_insert(time_scale);
+        let wanted = *self
+            .length
+            .get_or_insert_with(|| length::first(time_scale, control));
         // Half of what 16 nodes can do: a period of the load.
         let longest = 0.5 * local.longest_substep();
         let free = wanted.min(longest);
@@ -273,17 +282,11 @@ impl EndpointSteps {
             if !stays_between::<S>(way.bounds, state.position, moved, swing, displacement) {
                 break Some(End::Blocked);
             }
-            // One fewer next time, if that would have done.
-            self.iterations = stages.iterations;
-            let before_last = IterationTolerance {
-                error: 0.3 * tolerance.error,
-                rounding: 0.0,
-            };
-            if stages.iterations > LEAST_ITERATIONS
-                && before_last.is_met(last_change, f64::INFINITY, [change, last_change])
-            {
-                self.iterations -= 1;
-            }
+            // One fewer next time, or two, if that would have done: an iteration moves the end by what
+            // the one before has left.
+            let enough = 0.3 * tolerance.error;
+            let fewer = u32::from(change <= enough) + u32::from(last_change <= enough);
+            self.iterations = (stages.iterations - fewer).max(LEAST_ITERATIONS);
             // A change that is nothing but rounding tells nothing of the contraction.
             if change > tolerance.rounding {
                 self.seen.contraction = self.seen.contraction.max(change / last_change);
@@ -300,7 +303,8 @@ impl EndpointSteps {
             if left == 0.0 {
                 break Some(End::Reached);
             }
-            if another.is_some() {
+            // Unless as many steps are left of the new length as of this one.
+            if another.is_some_and(|next| (left * length / next - 1e-9).ceil() != left) {
                 self.iterations += 1;
                 break None;
             }
@@ -367,7 +371,13 @@ impl EndpointSteps {
             self.slope.include(simd, local, load, state.rate, positions);
         }
         let wanted = (half * half * self.slope.value).clamp(-STEEPEST, 0.0);
-        if (self.product - wanted).abs() < SLOPE_OFF {
+        let spreads = if of_this_length {
+            SPREADS_OFF
+        } else {
+            SPREADS_OFF_ONCE
+        };
+        let near_enough = SLOPE_OFF + spreads * half * half * self.slope.spread;
+        if (self.product - wanted).abs() < near_enough {
             // Matrices that are there serve another length too, with a slope that fits it.
             self.product
         } else if wanted > -SLOPE_OFF || !of_this_length && count < FEW {

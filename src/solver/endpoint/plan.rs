@@ -143,7 +143,7 @@ impl Plan {
         if (half, slope) != (self.half, self.slope) {
             if product != 0.0 && product != self.product {
                 self.product = product;
-                self.unscaled = with_slope(simd.level(), product);
+                with_slope(simd.level(), product, &mut self.unscaled);
             }
             self.slope = slope;
             self.scale(simd, half, product != 0.0);
@@ -304,44 +304,39 @@ impl Plan {
     }
 }
 
-/// The matrices of steps whose half is 1 with this slope.
+/// Makes them the matrices of steps whose half is 1 with this slope.
 #[inline(never)]
-fn with_slope(level: Level, slope: f64) -> Matrices {
-    dispatch!(level, simd => with_slope_by(simd, slope))
+fn with_slope(level: Level, slope: f64, matrices: &mut Matrices) {
+    dispatch!(level, simd => with_slope_by(simd, slope, matrices));
 }
 
 #[inline(always)]
-fn with_slope_by<S: Simd>(simd: S, slope: f64) -> Matrices {
+fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
     let Dense { place, plain, .. } = &TABLE;
     let twice = rows(&plain.twice);
     // W·A, of which W is 1 + J·W·A.
     let twice = quotient(simd, slope, &twice);
     let once = rows(&plain.once);
     let once = sum(simd, &once, slope, &once, &twice);
-    let mut matrices = Matrices {
-        twice: diagonals(&twice),
-        once: diagonals(&once),
-        ..*plain
-    };
-    for i in 0..NODES {
-        for k in 0..NODES {
-            matrices.drift[i] += slope * twice[i][k] * place[k];
-            matrices.gain[i] += slope * once[i][k] * place[k];
+    matrices.twice = diagonals(&twice);
+    matrices.once = diagonals(&once);
+    let places = both_permuted(scaled(pair(simd, place), slope));
+    let from = |values| pair(simd, values);
+    matrices.drift = unpair(multiply(simd, &matrices.twice, &places, from(&plain.drift)));
+    matrices.gain = unpair(multiply(simd, &matrices.once, &places, from(&plain.gain)));
+    let mut end = [f64x4::splat(simd, 0.0); NODES];
+    let mut end_drift = load(simd, &plain.end_drift);
+    for k in 0..NODES {
+        let own = load(simd, &plain.end[k]) * slope;
+        end_drift = own.mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
+        for j in 0..NODES {
+            end[j] = own.mul_add(f64x4::splat(simd, twice[k][j]), end[j]);
         }
     }
-    let mut end_drift = load(simd, &plain.end_drift);
     for j in 0..NODES {
-        let mut column = load(simd, &plain.end[j]);
-        for k in 0..NODES {
-            column =
-                load(simd, &plain.end[k]).mul_add(f64x4::splat(simd, slope * twice[k][j]), column);
-        }
-        column.store_slice(&mut matrices.end[j]);
-        let factor = f64x4::splat(simd, slope * matrices.drift[j]);
-        end_drift = load(simd, &plain.end[j]).mul_add(factor, end_drift);
+        (end[j] + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
     }
     end_drift.store_slice(&mut matrices.end_drift);
-    matrices
 }
 
 /// factor · values.
