@@ -44,12 +44,12 @@ static WEIGHTS: Weights = weights();
 /// 27720 is divisible by each of 1 to 12.
 const DENOMINATOR: i128 = 27_720;
 
-/// The coefficients of Π (σ + i) over i = 0 to 9 without `left_out`, by powers of σ.
-const fn product(left_out: usize) -> [i128; ORDER + 1] {
+/// The coefficients of Π (σ + i) over i from 0 to before `points`, without `left_out`, by powers of σ.
+pub const fn product(points: usize, left_out: usize) -> [i128; ORDER + 1] {
     let mut coefficients = [0; ORDER + 1];
     coefficients[0] = 1;
     let mut i = 0;
-    while i < ORDER {
+    while i < points {
         if i != left_out {
             let mut k = ORDER;
             while k > 0 {
@@ -76,10 +76,10 @@ const fn integrals(p: [i128; ORDER + 1], scale: i128) -> (f64, f64) {
     (once as f64 / scale, (once - moment) as f64 / scale)
 }
 
-/// Π (i − j) over i = 0 to 9 other than j: the value of the product above at its own node.
-const fn own(j: usize) -> i128 {
+/// Π (i − j) over the same i other than j: the value of the product above at its own node.
+pub const fn own(points: usize, j: usize) -> i128 {
     let (mut value, mut i) = (1, 0);
-    while i < ORDER {
+    while i < points {
         if i != j {
             value *= i as i128 - j as i128;
         }
@@ -98,17 +98,17 @@ const fn weights() -> Weights {
     };
     let mut j = 0;
     while j < ORDER {
-        let p = product(j);
-        (weights.once[j], weights.twice[j]) = integrals(p, own(j));
+        let p = product(ORDER, j);
+        (weights.once[j], weights.twice[j]) = integrals(p, own(ORDER, j));
         let (mut at_one, mut k) = (0, 0);
         while k <= ORDER {
             at_one += p[k];
             k += 1;
         }
-        weights.continued[j] = (at_one / own(j)) as f64;
+        weights.continued[j] = (at_one / own(ORDER, j)) as f64;
         j += 1;
     }
-    let all = product(ORDER);
+    let all = product(ORDER, ORDER);
     let (mut factorial, mut i) = (1, 2);
     while i <= ORDER as i128 {
         factorial *= i;

@@ -1,6 +1,6 @@
 //! Where a motion turns between two steps of the multistep method.
 
-use super::multistep::{BLOCK, LaneStates, ORDER};
+use super::multistep::{BLOCK, LaneStates, ORDER, own, product};
 
 /// Values of f through which the polynomial goes.
 const POINTS: usize = 8;
@@ -16,21 +16,7 @@ const fn powers() -> [[f64; POINTS]; POINTS] {
     let mut j = 0;
     while j < POINTS {
         // Π (σ + i)/(i − j) over i other than j.
-        let mut coefficients = [0_i128; POINTS];
-        coefficients[0] = 1;
-        let (mut own, mut i) = (1_i128, 0);
-        while i < POINTS {
-            if i != j {
-                let mut k = POINTS - 1;
-                while k > 0 {
-                    coefficients[k] = coefficients[k] * i as i128 + coefficients[k - 1];
-                    k -= 1;
-                }
-                coefficients[0] *= i as i128;
-                own *= i as i128 - j as i128;
-            }
-            i += 1;
-        }
+        let (coefficients, own) = (product(POINTS, j), own(POINTS, j));
         let mut k = 0;
         while k < POINTS {
             table[k][j] = coefficients[k] as f64 / own as f64;

@@ -7,8 +7,9 @@
 //!
 //! Accuracy: the end of a substep superconverges; between, the polynomial has
 //! the error of interpolating f, estimated by the end of its Legendre series.
-//! [`super::coupled::stages`] solves the same stages for systems with further states. This kernel is
-//! faster where there are none: nodes are folded into pairs.
+//! [`super::coupled::stages`] solves the same stages for systems with further states. This kernel
+//! folds the nodes into pairs and takes less than a third of the time (packed FMU in SI units under
+//! 20 MHz, without a dashpot and with one of 1e-30 N s/m).
 //!
 //! No arithmetic depends on the number of lanes, so that every SIMD level with
 //! a fused multiply-add gives the same bits.
