@@ -161,7 +161,7 @@ fn instantiated<M: Model>(
     host: Host,
     make: impl FnOnce() -> Result<Instance<M>, Fault>,
 ) -> fmi2Component {
-    match contained(|| computing(make)) {
+    match contained(|| computing(make), Err) {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
         Err(fault) => {
             host.refuse("fmi2Instantiate", fault);
@@ -173,10 +173,7 @@ fn instantiated<M: Model>(
 /// Frees what a host has had, and the way out. No panic leaves it.
 fn free<T>(owned: Box<T>) {
     // Nobody is left who could be told.
-    let _ = contained(|| {
-        drop(owned);
-        Ok(())
-    });
+    contained(|| drop(owned), |_| ());
 }
 
 /// A text.
@@ -249,7 +246,7 @@ mod tests {
     fn a_panic_in_making_an_instance_leaves_none() {
         let panics =
             || -> Result<Instance<Nondimensional>, Fault> { panic!("what the test asks for") };
-        let fault = contained(panics).expect_err("a panic");
+        let fault = contained(panics, Err).expect_err("a panic");
         assert_eq!(fault.severity, Severity::Fatal);
         assert!(fault.text.contains("internal error"), "{}", fault.text);
         assert!(instantiated(host(), panics).is_null());

@@ -67,11 +67,11 @@ struct Component<M: Model> {
     host: Host,
 }
 
-/// Runs `body`; a panic in it becomes a fatal fault, and goes no further.
+/// Runs `body`; a panic in it goes no further, and becomes what `failed` makes of a fatal fault.
 #[inline(always)]
-fn contained<T>(body: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+fn contained<T>(body: impl FnOnce() -> T, failed: impl FnOnce(Fault) -> T) -> T {
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
-        Err(Fault {
+        failed(Fault {
             severity: Severity::Fatal,
             text: "an internal error; free this instance, if there is one, and report the fault"
                 .into(),
@@ -127,14 +127,30 @@ fn guarded_in_place<M: Model>(
     if let Err(fault) = call.check(&component.instance) {
         return component.host.refuse(function, fault);
     }
-    match contained(|| computing(|| body(component))) {
-        Ok(None) => fmi2Status_fmi2OK,
-        Ok(Some(event)) => component.host.announce(function, event),
-        Err(fault) => {
-            if fault.severity == Severity::Fatal {
-                component.instance.give_up();
+    // Boxed, so that a call that has nothing to tell hands no large result on.
+    let body = || match body(component) {
+        Ok(None) => None,
+        told => Some(Box::new(told)),
+    };
+    match contained(|| computing(body), |fault| Some(Box::new(Err(fault)))) {
+        None => fmi2Status_fmi2OK,
+        Some(told) => component.tell(function, *told),
+    }
+}
+
+impl<M: Model> Component<M> {
+    /// Tells the host what has happened in a call.
+    #[cold]
+    fn tell(&mut self, function: &str, told: Result<Option<Event>, Fault>) -> fmi2Status {
+        match told {
+            Ok(None) => fmi2Status_fmi2OK,
+            Ok(Some(event)) => self.host.announce(function, event),
+            Err(fault) => {
+                if fault.severity == Severity::Fatal {
+                    self.instance.give_up();
+                }
+                self.host.refuse(function, fault)
             }
-            component.host.refuse(function, fault)
         }
     }
 }
@@ -259,6 +275,7 @@ pub unsafe extern "C" fn fmi2SetReal<M: Model>(
 }
 
 /// Sets variables of one type; `convert` makes our values of its.
+#[inline(never)]
 unsafe fn set<M: Model, T: Copy>(
     c: fmi2Component,
     function: &str,

@@ -133,10 +133,8 @@ impl<M: Model> Run<M> {
         }
         let deviation = if ahead.abs() <= SAME * current.abs() {
             0.0
-        } else if ahead.abs() < allowance(step, current) {
-            ahead
         } else {
-            return Err(self.not_the_time(current));
+            self.deviation(current, step, ahead)?
         };
         if let Some(stop) = stop_time {
             self.check_end(current, step, deviation, stop)?;
@@ -144,8 +142,19 @@ impl<M: Model> Run<M> {
         Ok(deviation)
     }
 
+    /// How far the host's clock may be `ahead` of ours in this step: refuses more.
+    #[inline(never)]
+    fn deviation(&self, current: f64, step: f64, ahead: f64) -> Result<f64, Fault> {
+        if ahead.abs() < allowance(step, current) {
+            Ok(ahead)
+        } else {
+            Err(self.not_the_time(current))
+        }
+    }
+
     /// Refuses a step beyond the stop time. The end is reached by the host's clock or by the sum
     /// of its steps, from which that of a host that adds up in single precision runs away.
+    #[inline(never)]
     fn check_end(&self, current: f64, step: f64, deviation: f64, stop: f64) -> Result<(), Fault> {
         let beyond = current + step - stop;
         let allowed = allowance(step, stop);
@@ -266,29 +275,37 @@ impl<M: Model> Instance<M> {
     /// Error for a step that cannot be meant, with nothing changed; Discard
     /// where the step ends early, at [`Instance::last_successful_time`].
     pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
+        self.followed(current, step)
+            .map_err(|fault| self.failed(fault))
+    }
+
+    #[inline(always)]
+    fn followed(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
         let Simulation::Run(run) = &mut self.simulation else {
             return Err(Fault::error("the initialization has not been ended".into()));
         };
-        let stop_time = self.experiment.stop_time;
-        let outcome = run
-            .check_step(current, step, stop_time)
-            .and_then(|deviation| {
-                if deviation != 0.0 {
-                    follow_clock(
-                        run,
-                        &mut self.scene,
-                        self.fresh_derivatives,
-                        current,
-                        deviation,
-                    );
-                }
-                self.fresh_derivatives = 0;
-                run.step(&self.scene, current, step)
-            });
-        if matches!(&outcome, Err(fault) if fault.severity == Severity::Discard) && !run.was_cut() {
+        let deviation = run.check_step(current, step, self.experiment.stop_time)?;
+        if deviation != 0.0 {
+            follow_clock(
+                run,
+                &mut self.scene,
+                self.fresh_derivatives,
+                current,
+                deviation,
+            );
+        }
+        self.fresh_derivatives = 0;
+        run.step(&self.scene, current, step)
+    }
+
+    /// Notes that a step has ended early for good, if it has.
+    #[cold]
+    fn failed(&mut self, fault: Fault) -> Fault {
+        let was_cut = matches!(&self.simulation, Simulation::Run(run) if run.was_cut());
+        if fault.severity == Severity::Discard && !was_cut {
             self.phase = Phase::StepFailed;
         }
-        outcome
+        fault
     }
 }
 

@@ -167,18 +167,14 @@ impl<M: Model> Instance<M> {
         component.is_some()
     }
 
-    /// Sets an input, where all of them keep their values between communication points. Only
-    /// compares and copies: no arithmetic is done, and no floating-point comparison. Returns
-    /// whether it has been set; if not, nothing has changed, and [`Instance::set`] is to be called.
+    /// Sets an input that keeps its value between communication points. Only compares and copies: no
+    /// arithmetic is done, and no floating-point comparison. Returns whether it has been set; if not,
+    /// nothing has changed, and [`Instance::set`] is to be called.
     #[inline]
     pub fn set_held(&mut self, reference: u32, value: f64) -> bool {
-        let Some(of) = self.held_input(reference, value) else {
+        let Some(input) = self.held_input(reference, value) else {
             return false;
         };
-        if let Some(time) = self.now() {
-            M::begin_inputs(&mut self.scene, time);
-        }
-        let input = of(&mut self.scene);
         if input.value().to_bits() != value.to_bits() {
             // Its derivatives are 0 as it is.
             input.set_value(value);
@@ -199,22 +195,16 @@ impl<M: Model> Instance<M> {
                 .all(|(reference, value)| self.set_held(reference, value))
     }
 
-    /// The input that may be set to this value, where all of them keep theirs.
+    /// The input of this value reference, if it keeps its value and may have this one.
     #[inline]
-    fn held_input(
-        &self,
-        reference: u32,
-        value: f64,
-    ) -> Option<fn(&mut M::Scene) -> &mut Polynomial> {
+    fn held_input(&mut self, reference: u32, value: f64) -> Option<&mut Polynomial> {
         let variable = M::VARIABLES.get(reference as usize)?;
-        match variable.access {
-            Access::Input { of, .. }
-                if M::inputs_are_held(&self.scene) && variable.contains(value) =>
-            {
-                Some(of)
-            }
-            _ => None,
-        }
+        let Access::Input { of, .. } = variable.access else {
+            return None;
+        };
+        let input = of(&mut self.scene);
+        let same = input.value().to_bits() == value.to_bits();
+        (input.is_constant() && (same || variable.contains(value))).then_some(input)
     }
 
     /// Sets the variables of type `wanted` with these value references. In model

@@ -90,9 +90,6 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// The state at the start time.
     fn start(scene: &Self::Scene) -> Self::State;
 
-    /// Whether each input keeps its value; found out without floating-point operations.
-    fn inputs_are_held(scene: &Self::Scene) -> bool;
-
     /// Counts the time of the inputs from `time` on; the inputs stay the same functions of time.
     fn rebase_inputs(scene: &mut Self::Scene, time: DoubleDouble);
 

@@ -60,11 +60,6 @@ impl Model for Nondimensional {
         scene.drive.is_finite()
     }
 
-    #[inline]
-    fn inputs_are_held(scene: &Scene) -> bool {
-        scene.drive.voltage.is_constant() && scene.drive.prestress.is_constant()
-    }
-
     fn check_start(scene: &Scene) -> Result<(), String> {
         let start = scene.start.position;
         let limits = scene.limits;

@@ -86,11 +86,6 @@ impl Model for Si {
             && scene.sources.iter().all(|source| source.is_finite())
     }
 
-    #[inline]
-    fn inputs_are_held(scene: &SiScene) -> bool {
-        scene.force.is_constant() && scene.sources.iter().all(|source| source.is_constant())
-    }
-
     fn check_start(scene: &SiScene) -> Result<(), String> {
         scene.check()
     }
