@@ -304,8 +304,8 @@ impl LocalEquation for LocalUnfolded<'_> {
         self.motion.load_frequency()
     }
 
-    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
-        self.motion.load_series(half)
+    fn eighth_degree(&self, half: f64, factor: f64) -> Option<[f64; 2]> {
+        self.motion.eighth_degree(half, factor)
     }
 
     fn parts<N: Number>(load: Load<N>) -> [N; 2] {
@@ -314,10 +314,6 @@ impl LocalEquation for LocalUnfolded<'_> {
 
     fn sensitivity(&self, state: State) -> Sensitivity {
         self.motion.sensitivity(state)
-    }
-
-    fn natural_frequency(&self, state: State) -> f64 {
-        self.motion.natural_frequency(state)
     }
 }
 
@@ -375,8 +371,8 @@ impl LocalEquation for LocalIdeal<'_> {
         self.0.load_frequency()
     }
 
-    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
-        self.0.load_series(half)
+    fn eighth_degree(&self, half: f64, factor: f64) -> Option<[f64; 2]> {
+        self.0.eighth_degree(half, factor)
     }
 
     fn parts<N: Number>(load: Load<N>) -> [N; 2] {
@@ -385,9 +381,5 @@ impl LocalEquation for LocalIdeal<'_> {
 
     fn sensitivity(&self, state: State) -> Sensitivity {
         self.0.sensitivity(state)
-    }
-
-    fn natural_frequency(&self, state: State) -> f64 {
-        self.0.natural_frequency(state)
     }
 }

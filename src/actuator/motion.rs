@@ -163,8 +163,8 @@ impl LocalEquation for LocalMotion<'_> {
     }
 
     #[inline(always)]
-    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
-        self.drive.load_series(half)
+    fn eighth_degree(&self, half: f64, factor: f64) -> Option<[f64; 2]> {
+        self.drive.eighth_degree(half, factor)
     }
 
     #[inline(always)]
@@ -172,47 +172,54 @@ impl LocalEquation for LocalMotion<'_> {
         [load.voltage_squared, load.prestress]
     }
 
-    /// λ³/M, 1/M and |12λ'λ⁻⁷/M|, M being the inertia c + 2λ⁻⁶.
+    /// M being the inertia c + 2λ⁻⁶: |∂λ''/∂λ| with the absolute values of the terms of the
+    /// stiffness added up; λ³/M and 1/M; |12λ'λ⁻⁷/M|.
     #[inline(always)]
     fn sensitivity(&self, state: State) -> Sensitivity {
         let stretch = state.position;
         let cube = stretch * stretch * stretch;
-        let sixth = cube * cube;
-        let inverse = 1.0 / ((self.coefficients.inertia * sixth + 2.0) * stretch);
-        let by_prestress = sixth * stretch * inverse;
+        let [stiffness, mass] = self.stiffness_and_mass(stretch);
+        let inverse = 1.0 / mass;
+        let by_prestress = (cube * cube) * inverse;
         Sensitivity {
+            position: stiffness * inverse,
             load: [cube * by_prestress, by_prestress],
-            rate: 12.0 * (state.rate * inverse).abs(),
+            rate: 12.0 * (state.rate * inverse / stretch).abs(),
         }
     }
 
-    /// √|∂λ''/∂λ| with the absolute values of the terms of the stiffness added up, since their
-    /// sum may vanish.
     #[inline(always)]
     fn natural_frequency(&self, state: State) -> f64 {
-        let voltage = self.drive.largest_voltage();
-        let square = state.position * state.position;
+        let [stiffness, mass] = self.stiffness_and_mass(state.position);
+        root_of_quotient(stiffness, mass)
+    }
+}
+
+impl LocalMotion<'_> {
+    /// Both sides of |∂λ''/∂λ| = stiffness/M, times λ⁶. The absolute values of the terms of the
+    /// stiffness are added up, since their sum may vanish.
+    #[inline(always)]
+    fn stiffness_and_mass(&self, stretch: f64) -> [f64; 2] {
         let Coefficients {
             inertia,
             linear,
             cubic,
             quintic,
         } = self.coefficients;
-        // Both times λ⁶, which is worked out as in `sensitivity`.
-        let cube = square * state.position;
+        let voltage = self.drive.largest_voltage();
+        let square = stretch * stretch;
+        let cube = square * stretch;
         let sixth = cube * cube;
         let stiffness = 5.0
             + sixth
                 * (linear.abs()
                     + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic));
-        let mass = inertia * sixth + 2.0;
-        root_of_quotient(stiffness, mass)
+        [stiffness, inertia * sixth + 2.0]
     }
 }
 
 /// √(a/b) of positive numbers, to 10 %. The bits of a number are its logarithm, linear
-/// between powers of 2. A true quotient and root would take longer than f, and a short step
-/// depends on them.
+/// between powers of 2.
 #[inline(always)]
 fn root_of_quotient(a: f64, b: f64) -> f64 {
     const ONE: i64 = 1.0_f64.to_bits() as i64;

@@ -78,6 +78,8 @@ pub trait Equation {
 /// How f changes in a state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensitivity {
+    /// |∂f/∂x|, roughly: the absolute values of its terms added up, since their sum may vanish.
+    pub position: f64,
     /// ∂f/∂load of the two parts of the load.
     pub load: [f64; 2],
     /// |∂f/∂x'|.
@@ -118,20 +120,24 @@ pub trait LocalEquation {
         4.0 * std::f64::consts::PI / self.load_frequency()
     }
 
-    /// Bounds of the two parts of the load over a step of `half` to either side of its
-    /// middle, which begins at the origin: of the coefficients of u⁴ to u⁸ where each is a
-    /// power series in u, −1 at the begin and 1 at the end. Nothing where both are of a lower
-    /// degree.
-    fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]>;
+    /// How much each of the two parts of the load adds to the coefficient of u⁸ of f, at most,
+    /// over a step of `half` to either side of its middle, which begins at the origin: u is −1 at
+    /// the begin and 1 at the end. A load of degree 4 or higher is multiplied by a power series
+    /// whose coefficients fall by `factor` from degree to degree. Nothing where both parts are of
+    /// a lower degree.
+    fn eighth_degree(&self, half: f64, factor: f64) -> Option<[f64; 2]>;
 
     /// The two parts of a load; the second one is 0 where there is but one.
     fn parts<N: Number>(load: Self::Load<N>) -> [N; 2];
 
-    /// How f changes with the load and the rate.
+    /// How f changes in a state.
     fn sensitivity(&self, state: State) -> Sensitivity;
 
-    /// How fast the motion from here changes by itself, such as √|∂f/∂x|, roughly.
-    fn natural_frequency(&self, state: State) -> f64;
+    /// How fast the motion from here changes by itself: √|∂f/∂x|, roughly.
+    #[inline(always)]
+    fn natural_frequency(&self, state: State) -> f64 {
+        self.sensitivity(state).position.sqrt()
+    }
 
     /// The time scale of the motion from here, the inverse of that; in a function of its own,
     /// where a few nanoseconds count less than its size.

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::collocation::product;
 use super::step_control::{StepControl, UNSEEN};
 use super::tables::{ENDS_4, GAUSS_4};
-use super::{Equation, LocalEquation, Sensitivity, State};
+use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::lanes::Lanes;
 use crate::arithmetic::number::Number;
@@ -21,16 +21,12 @@ use crate::arithmetic::number::Number;
 /// A short step is shorter than this part of the motion's time scale.
 const SHORT: f64 = 0.25;
 
-/// What a single iteration may leave in a time scale, as a part of the tolerance for what
-/// is repeated: seen only after 1e4 time scales in which it always has the same sign.
-const LEFT_BY_ONE: f64 = 0.1;
-
 /// By how much 4 nodes integrate u⁸ wrongly over −1…1, and a quarter more for what
 /// comes after it.
 const NEXT_DEGREE: f64 = 1.25 * 0.011_610;
 
 /// One step from a time on.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct ShortStep<'a> {
     /// Time of the model at its begin.
     pub time: &'a DoubleDouble,
@@ -38,22 +34,27 @@ pub struct ShortStep<'a> {
     pub length: f64,
     /// Positions between which it may go.
     pub bounds: (f64, f64),
+    /// What it may miss.
+    pub control: StepControl,
+    /// The state, at its begin and then at its end. It is changed where it lies, since the next
+    /// step waits for it: handing it on in memory takes a tenth of an iteration each time.
+    pub state: &'a mut State,
+    /// What f was in the last step, and then in this one.
+    pub trend: &'a mut Trend,
 }
 
 /// What f was in the last short step, from which it is guessed what it will be in the next
 /// one: hosts mostly take equal steps, along which they change the equation smoothly.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Trend {
-    /// f at the end.
-    end: f64,
-    /// By how much it had risen.
-    rise: f64,
-    /// Both parts of the load at the end.
-    load: [f64; 2],
-    /// The sine of what alternates in it there.
-    sine: f64,
-    /// ∂f/∂load at the begin.
+    /// f at the end without what both parts of the load add to it.
+    unloaded: f64,
+    /// Its slope there times the length of the step.
+    slope: f64,
+    /// ∂f/∂load of both parts at the begin.
     response: [f64; 2],
+    /// The sine of what alternates in the load at the end.
+    sine: f64,
 }
 
 impl Trend {
@@ -66,17 +67,18 @@ impl Trend {
         length: f64,
     ) -> Option<Trend> {
         let local = equation.seen_from(time);
-        part_of_time_scale(&local, state, length)?;
-        Some(Trend::at_rest(&local, state))
+        let stiffness = local.sensitivity(state).position;
+        is_short(&local, length, stiffness).then(|| Trend::at_rest(&local, state))
     }
 
     fn at_rest<L: LocalEquation>(local: &L, state: State) -> Trend {
+        let [one, other] = L::parts(local.load(0.0));
+        let response = local.sensitivity(state).load;
         Trend {
-            end: local.acceleration_from(state),
-            rise: 0.0,
-            load: L::parts(local.load(0.0)),
+            unloaded: local.acceleration_from(state) - (one * response[0] + other * response[1]),
+            slope: 0.0,
+            response,
             sine: local.harmonic().map_or(0.0, |[_, angle]| angle.sin()),
-            response: local.sensitivity(state).load,
         }
     }
 }
@@ -84,83 +86,37 @@ impl Trend {
 impl ShortStep<'_> {
     /// Moves the state to its end and tells what f was. False where it is too long or
     /// does not stay between the bounds; then nothing has changed.
-    ///
-    /// The state is changed where it lies, since the next step waits for it: handing it on
-    /// in memory takes a tenth of an iteration each time.
-    pub fn take<E: Equation>(
-        &self,
-        level: Level,
-        equation: &E,
-        control: StepControl,
-        state: &mut State,
-        trend: &mut Trend,
-    ) -> bool {
+    pub fn take<E: Equation>(&mut self, level: Level, equation: &E) -> bool {
         // All of it, since what is not done in lanes takes as many instructions.
-        dispatch!(level, simd => self.take_with(simd, equation, control, state, trend).is_some())
+        dispatch!(level, simd => self.take_with(simd, equation).is_some())
     }
 
     #[inline(always)]
-    fn take_with<S: Simd, E: Equation>(
-        &self,
-        simd: S,
-        equation: &E,
-        control: StepControl,
-        state: &mut State,
-        trend: &mut Trend,
-    ) -> Option<()> {
+    fn take_with<S: Simd, E: Equation>(&mut self, simd: S, equation: &E) -> Option<()> {
         let local = equation.at(self.time);
-        let solved = solve(simd, &local, control, *state, self.length, trend)?;
-        let scale = state.position.abs();
-        let part = solved.part;
-        let missed = quadrature_error(&local, solved.response, *state, self.length, part);
-        let good = solved.stays_between(self.bounds, *state)
+        let (start, control) = (*self.state, self.control);
+        let solved = solve(simd, &local, control, start, self.length, self.trend)?;
+        let (part, scale) = (solved.part, start.position.abs());
+        let response = solved.trend.response;
+        let allowed = (control.tolerance * part).max(UNSEEN) * scale;
+        let good = solved.stays_between(self.bounds, start)
             && solved.is_within(control.end_tolerance_within(part) * scale)
-            && missed <= (control.tolerance * part).max(UNSEEN) * scale;
+            && load_is_integrated(&local, response, start, self.length, part, allowed);
         if !good {
             return None;
         }
-        *state = solved.end;
-        *trend = Trend {
-            end: solved.f[1],
-            rise: solved.f[1] - solved.f[0],
-            load: solved.load,
-            sine: solved.sine,
-            response: solved.response,
-        };
+        *self.state = solved.end;
+        *self.trend = solved.trend;
         Some(())
     }
 }
 
-/// The part of the motion's time scale that a step is, where it is not too long.
+/// Whether a step is short against the motion's time scale where ∂f/∂x is this, and the load turns no
+/// more than half a turn in it, as much as 16 nodes see of it in a substep.
 #[inline(always)]
-fn part_of_time_scale<L: LocalEquation>(local: &L, state: State, length: f64) -> Option<f64> {
-    let part = length * local.natural_frequency(state);
-    // Half a turn of the load, as much as 16 nodes see of it in a substep.
+fn is_short<L: LocalEquation>(local: &L, length: f64, stiffness: f64) -> bool {
     let turns = length * local.load_frequency();
-    (part < SHORT && turns <= std::f64::consts::PI).then_some(part)
-}
-
-/// A bound of the error that a load makes at the end of a step, of the rate times the
-/// motion's time scale, because 4 nodes integrate f up to degree 7 only. The load's part of f
-/// is multiplied by what the motion does to it, a power series in the part of the time scale
-/// and in the part of the position that the step passes.
-#[inline(always)]
-fn quadrature_error<L: LocalEquation>(
-    local: &L,
-    [one, other]: [f64; 2],
-    state: State,
-    length: f64,
-    part: f64,
-) -> f64 {
-    let half = 0.5 * length;
-    let Some([first, second]) = local.load_series(half) else {
-        return 0.0;
-    };
-    let passed = (half * state.rate / state.position).abs();
-    let factor = 0.25 * part + 3.0 * passed;
-    let terms = first.iter().zip(&second);
-    let eighth = terms.fold(0.0, |sum, (a, b)| sum * factor + (one * a + other * b));
-    NEXT_DEGREE * length * half * eighth / part
+    stiffness * (length * length) < SHORT * SHORT && turns <= std::f64::consts::PI
 }
 
 /// A short step that has been solved.
@@ -168,13 +124,8 @@ fn quadrature_error<L: LocalEquation>(
 struct Solved {
     /// The state at its end.
     end: State,
-    /// f at its begin and there.
-    f: [f64; 2],
-    /// Both parts of the load at its end, and the sine of what alternates in it.
-    load: [f64; 2],
-    sine: f64,
-    /// ∂f/∂load at its begin.
-    response: [f64; 2],
+    /// What f was.
+    trend: Trend,
     /// By how much the Legendre coefficients of f, degree by degree, can move the
     /// position: their size times the square of half the length.
     size: [f64; 4],
@@ -187,15 +138,21 @@ impl Solved {
     /// and what a curve of this f can lie beside it.
     #[inline(always)]
     fn stays_between(&self, (lowest, highest): (f64, f64), start: State) -> bool {
-        let beside = 0.5 * self.size.iter().sum::<f64>();
-        let holds = |position: f64| position - beside > lowest && position + beside < highest;
-        holds(start.position) & holds(self.end.position)
+        let [zeroth, first, second, third] = self.size;
+        let beside = 0.5 * ((zeroth + first) + (second + third));
+        let (one, other) = (start.position, self.end.position);
+        let [low, high] = if one < other {
+            [one, other]
+        } else {
+            [other, one]
+        };
+        low - beside > lowest && high + beside < highest
     }
 
-    /// Whether the error at the end is at most `bound`, but for that of
-    /// [`quadrature_error`]. The first degree that is missed, 4, falls from the size of the
-    /// series as the square of degree 2 or the power 4/3 of degree 3, here 3/2; and it acts on
-    /// the end by what degree 4 is in the motion's response to f.
+    /// Whether the error at the end is at most `bound`, but for what [`load_is_integrated`]
+    /// judges. The first degree that is missed, 4, falls from the size of the series as the square
+    /// of degree 2 or the power 4/3 of degree 3, here 3/2; and it acts on the end by what degree 4
+    /// is in the motion's response to f.
     ///
     /// Written without quotients and roots, for which all else would have to wait.
     #[inline(always)]
@@ -204,9 +161,33 @@ impl Solved {
         let size = zeroth + first;
         let square = 0.25 * self.part * self.part;
         let response = square * square;
-        let by_second = response * (second * second);
-        let by_third = (response * response) * (third * third * third);
-        by_second <= bound * size && by_third <= (bound * bound) * size
+        let allowed = bound * size;
+        let by_third = response * third;
+        response * (second * second) <= allowed && by_third * by_third * third <= bound * allowed
+    }
+}
+
+/// Whether the error that a load makes at the end of a step, because 4 nodes integrate f up to degree 7
+/// only, is at most `allowed`: that of the rate times the motion's time scale. The load's part of f
+/// is multiplied by what the motion does to it, a power series in the part of the time scale
+/// and in the part of the position that the step passes.
+#[inline(always)]
+fn load_is_integrated<L: LocalEquation>(
+    local: &L,
+    [by_one, by_other]: [f64; 2],
+    state: State,
+    length: f64,
+    part: f64,
+    allowed: f64,
+) -> bool {
+    let half = 0.5 * length;
+    let passed = (half * state.rate / state.position).abs();
+    match local.eighth_degree(half, 0.25 * part + 3.0 * passed) {
+        Some([one, other]) => {
+            let missed = NEXT_DEGREE * length * half * (one * by_one + other * by_other);
+            missed <= allowed * part
+        }
+        None => true,
     }
 }
 
@@ -235,12 +216,11 @@ fn solve<S: Simd, L: LocalEquation>(
     let line = offset.mul_add(fill(start.rate), fill(start.position));
     // Of an f that jumps as the load does and then rises evenly.
     // By the sine at the end of the last step, since that of this one is waited for.
-    let load_at_begin = L::parts(local.load_with_sine(0.0, trend.sine));
-    let [one, other] = [0, 1].map(|k| load_at_begin[k] - trend.load[k]);
-    let first = trend.end + (one * trend.response[0] + other * trend.response[1]);
-    let gain = offset * place.mul_add(fill(trend.rise * 0.25), fill(first));
-    let mut bent =
-        (offset * offset) * place.mul_add(fill(trend.rise * (1.0 / 12.0)), fill(first * 0.5));
+    let [one, other] = L::parts(local.load_with_sine(0.0, trend.sine));
+    let first = trend.unloaded + (one * trend.response[0] + other * trend.response[1]);
+    let slope = trend.slope;
+    let gain = offset * place.mul_add(fill(slope * 0.25), fill(first));
+    let mut bent = (offset * offset) * place.mul_add(fill(slope * (1.0 / 12.0)), fill(first * 0.5));
     let mut position = line + bent;
     let mut rate = gain + fill(start.rate);
 
@@ -252,28 +232,38 @@ fn solve<S: Simd, L: LocalEquation>(
 
     // Only now, so that it is worked out while the first iteration is waited for.
     let scale = start.position.abs();
-    let part = part_of_time_scale(local, start, length)?;
-    let Sensitivity {
-        load: response,
-        rate: damping,
-    } = local.sensitivity(start);
-    // What is left of an error of the guess is known beforehand.
-    let contraction = part * part + damping * length;
-    if change * contraction > LEFT_BY_ONE * control.tolerance * scale * (part * part) {
+    let sensitivity = local.sensitivity(start);
+    if !is_short(local, length, sensitivity.position) {
+        return None;
+    }
+    let square_part = sensitivity.position * (length * length);
+    let part = square_part.sqrt();
+    // What iterations leave of the change of the first one is known beforehand. In a time scale it may
+    // be as large as what is repeated may miss: seen only after 1e3 time scales in which it always
+    // has the same sign.
+    let contraction = square_part + sensitivity.rate * length;
+    let allowed = control.tolerance * scale * square_part;
+    let mut left = change * contraction;
+    if left > allowed {
         let tolerance = control.iteration_tolerance(scale, part);
         let mut iterations = 1;
         loop {
             iterations += 1;
             let once: f64x4<S> = product(simd, &GAUSS_4.once, &f);
-            bent = new;
             // Not from `bent`, for which it would have to wait.
             position = twice.mul_add(fill(square), line);
             rate = once.mul_add(fill(half), fill(start.rate));
             f = local.acceleration(load, position, rate).store();
+            left *= contraction;
+            if left <= allowed {
+                break;
+            }
+            bent = new;
             twice = product(simd, &GAUSS_4.twice, &f);
             new = twice * fill(square);
             let last_change = change;
             change = Lanes::<S, 4>::abs(new - bent).largest();
+            left = change * contraction;
             let rate = [change, last_change];
             let converged = tolerance.has_converged(iterations, change, last_change, rate);
             if converged.ok()? {
@@ -294,13 +284,19 @@ fn solve<S: Simd, L: LocalEquation>(
     let weight: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
     let drift: f64x4<S> = Lanes::load(simd, &[length * start.rate, 0.0, 0.0, 0.0]);
     let from: f64x4<S> = Lanes::load(simd, &[start.position, start.rate, 0.0, 0.0]);
-    let [position, rate, last, first] = Lanes::<S, 4>::store(added.mul_add(weight, drift) + from);
+    let [position, rate, last, slope] = Lanes::<S, 4>::store(added.mul_add(weight, drift) + from);
+    let [one, other] = L::parts(local.load_with_sine(length, sine));
+    let response = sensitivity.load;
     Some(Solved {
         end: State { position, rate },
-        f: [first, last],
-        load: L::parts(local.load_with_sine(length, sine)),
-        sine,
-        response,
+        // Stored one by one and loaded so: numbers that were stored one by one could not be loaded
+        // together before they are in the cache.
+        trend: Trend {
+            unloaded: last - (one * response[0] + other * response[1]),
+            slope,
+            response,
+            sine,
+        },
         size: Lanes::<S, 4>::abs(series * fill(square)).store(),
         part,
     })
@@ -310,6 +306,7 @@ fn solve<S: Simd, L: LocalEquation>(
 mod tests {
     use super::*;
     use crate::arithmetic::number::Number;
+    use crate::solver::Sensitivity;
     use crate::solver::limits::Limits;
     use crate::solver::trajectory::Trajectory;
 
@@ -348,11 +345,11 @@ mod tests {
             self.0
         }
 
-        fn load_series(&self, half: f64) -> Option<[[f64; 5]; 2]> {
+        fn eighth_degree(&self, half: f64, factor: f64) -> Option<[f64; 2]> {
             let turn = self.0 * half;
             let factorial = [24.0, 120.0, 720.0, 5040.0, 40320.0];
-            let series = std::array::from_fn(|k| turn.powi(k as i32 + 4) / factorial[k]);
-            Some([series, [0.0; 5]])
+            let terms = (0..5).map(|k| turn.powi(k as i32 + 4) / factorial[k]);
+            Some([terms.fold(0.0, |sum, term| sum * factor + term), 0.0])
         }
 
         fn parts<N: Number>(load: N) -> [N; 2] {
@@ -361,13 +358,10 @@ mod tests {
 
         fn sensitivity(&self, state: State) -> Sensitivity {
             Sensitivity {
+                position: 1.0 + 5.0 * state.position.powi(-6),
                 load: [1.0, 0.0],
                 rate: 2.0 * (state.rate / state.position).abs(),
             }
-        }
-
-        fn natural_frequency(&self, state: State) -> f64 {
-            (1.0 + 5.0 * state.position.powi(-6)).sqrt()
         }
     }
 

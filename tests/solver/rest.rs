@@ -69,7 +69,7 @@ impl LocalEquation for Damped {
         0.0
     }
 
-    fn load_series(&self, _half: f64) -> Option<[[f64; 5]; 2]> {
+    fn eighth_degree(&self, _half: f64, _factor: f64) -> Option<[f64; 2]> {
         None
     }
 
@@ -79,13 +79,10 @@ impl LocalEquation for Damped {
 
     fn sensitivity(&self, _state: State) -> Sensitivity {
         Sensitivity {
+            position: 1.0,
             load: [0.0; 2],
             rate: 0.2,
         }
-    }
-
-    fn natural_frequency(&self, _state: State) -> f64 {
-        1.0
     }
 }
 

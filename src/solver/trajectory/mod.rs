@@ -147,10 +147,8 @@ impl Trajectory {
     ) -> Result<Progress, Failure> {
         let first = self.restarts_at_every_step && self.advances == 1;
         if first && self.method.takes_endpoint_steps {
-            // First, since all that the next step does with the time waits for it.
-            let end = clock.plus(step).renormalized();
             if self.takes_short_step(equation, clock, step) {
-                *clock = end;
+                *clock = clock.plus(step).renormalized();
                 return Ok(Progress::Whole);
             }
         }
@@ -213,13 +211,15 @@ impl Trajectory {
         let Some(trend) = &mut self.method.trend else {
             return false;
         };
-        let short = ShortStep {
+        let mut short = ShortStep {
             time,
             length: step,
             bounds,
+            control: self.control.repeated(),
+            state: &mut self.start,
+            trend,
         };
-        let control = self.control.repeated();
-        let taken = short.take(self.level, equation, control, &mut self.start, trend);
+        let taken = short.take(self.level, equation);
         if !taken {
             // So that a guess that leads nowhere is not made again.
             self.method.trend = None;
