@@ -71,7 +71,8 @@ impl<M: Method> Integrator<M> {
         let along_orbit = |orbit: Orbit| orbit.second_turn().since(self.recorded_until) <= 0.0;
         if !self.mode.orbit().is_some_and(along_orbit) {
             let first = self.history.find(self.recorded_until, 0);
-            let last = self.history.find(target, first);
+            // Not before the first one, whatever a forged state says.
+            let last = self.history.find(target, first).max(first);
             for step in &mut self.history.steps_mut()[first..=last] {
                 step.segment.expand();
                 let from = self.recorded_until.since(step.begin).max(0.0);
