@@ -146,11 +146,10 @@ impl Trajectory {
         step: f64,
     ) -> Result<Progress, Failure> {
         let first = self.restarts_at_every_step && self.advances == 1;
-        if first && self.method.takes_endpoint_steps {
-            if self.takes_short_step(equation, clock, step) {
-                *clock = clock.plus(step).renormalized();
-                return Ok(Progress::Whole);
-            }
+        if first && self.method.takes_endpoint_steps && self.takes_short_step(equation, clock, step)
+        {
+            *clock = clock.plus(step).renormalized();
+            return Ok(Progress::Whole);
         }
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
