@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 /// A double-double number `high + low`. After all operations but [`DoubleDouble::plus`], `low`
 /// is at most half an ulp of `high`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DoubleDouble {
     /// About the number rounded to `f64`.
     pub high: f64,

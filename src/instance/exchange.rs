@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::{Event, Fault, Instance, Simulation, check_time};
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::model::variables::{Access, Kind};
+use crate::model::variables::Access;
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
 
@@ -20,6 +20,8 @@ const REACHED: f64 = 1e-9;
 pub struct Exchange<M: Model> {
     pub(super) time: DoubleDouble,
     pub(super) state: M::State,
+    /// A tuned parameter has made the state another, which the host has not been told yet.
+    pub(super) states_changed: bool,
     pub(super) collapse: Option<Collapse<M::Limit>>,
     /// The limit at which the host's last step has ended, where the simulation is to end there:
     /// hosts read for the last time before they handle the event that tells them so.
@@ -50,6 +52,7 @@ impl<M: Model> Exchange<M> {
         Exchange {
             time,
             state,
+            states_changed: false,
             collapse: None,
             arrival: None,
             record: recording::<M>(scene, time, &state),
@@ -131,7 +134,7 @@ impl<M: Model> Instance<M> {
         exchange.arrival = None;
         let mut update = Update {
             terminate: false,
-            states_changed: false,
+            states_changed: std::mem::take(&mut exchange.states_changed),
             event: None,
         };
         if let Some(Collapse { limit, .. }) = exchange.collapse {
@@ -268,10 +271,8 @@ impl<M: Model> Instance<M> {
         if nominals.len() != count {
             return Err(wrong_count("nominals", nominals.len(), count));
         }
-        for (value, &row) in nominals.iter_mut().zip(M::STATES) {
-            if let Kind::Real { nominal, .. } = M::VARIABLES[row as usize].kind {
-                *value = nominal;
-            }
+        for (place, value) in nominals.iter_mut().enumerate() {
+            *value = M::nominal(&self.scene, place);
         }
         Ok(())
     }

@@ -131,22 +131,22 @@ impl<M: Model> Instance<M> {
             }
         }
         let view = self.view();
-        let mut all_numbers = true;
+        let mut no_number = None;
         for (place, &reference) in references.iter().enumerate() {
-            let value = match typed::<M>(reference, wanted)?.access {
+            let variable = typed::<M>(reference, wanted)?;
+            let value = match variable.access {
                 Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
                 Access::Setting { get, .. } => get(view.scene),
             };
-            all_numbers &= !value.is_nan();
+            if value.is_nan() {
+                no_number.get_or_insert(variable);
+            }
             store(place, value);
         }
-        if all_numbers {
-            return Ok(());
+        match no_number {
+            None => Ok(()),
+            Some(variable) => Err(cannot_be_worked_out(&view, variable)),
         }
-        let why = M::check_state(&view)
-            .err()
-            .unwrap_or("a result is no number".into());
-        Err(Fault::discard(format!("{why}; try a shorter step")))
     }
 
     /// Reads a state, where the motion stands at one that lies stored. Only compares and copies: no
@@ -233,8 +233,8 @@ impl<M: Model> Instance<M> {
         let window = M::window(&self.scene);
         let begun = self.phase.has_begun();
         self.bring_drive_up_to_date();
-        if begun {
-            self.check_tuned(references, &value)?;
+        if begun && let Some(state) = self.check_tuned(references, &value)? {
+            self.jump_to(state);
         }
         for (place, &reference) in references.iter().enumerate() {
             let value = value(place);
@@ -285,8 +285,13 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Refuses tunable parameters with which there is no motion from the present state.
-    fn check_tuned(&self, references: &[u32], value: &impl Fn(usize) -> f64) -> Result<(), Fault> {
+    /// Refuses tunable parameters with which there is no motion from the present state. Returns that
+    /// state, where it is another with them.
+    fn check_tuned(
+        &self,
+        references: &[u32],
+        value: &impl Fn(usize) -> f64,
+    ) -> Result<Option<M::State>, Fault> {
         let settings = references
             .iter()
             .enumerate()
@@ -303,16 +308,27 @@ impl<M: Model> Instance<M> {
             set(scene.get_or_insert_with(|| self.scene.clone()), value);
             last = Some((name, value));
         }
-        if let (Some(scene), Some((name, value))) = (scene, last) {
-            let view = View {
-                scene: &scene,
-                ..self.view()
-            };
-            M::check_state(&view).map_err(|why| {
-                Fault::error(format!("{name} = {} cannot be set: {why}", Shortest(value)))
-            })?;
+        let (Some(scene), Some((name, value))) = (scene, last) else {
+            return Ok(None);
+        };
+        let view = self.view();
+        let state = M::state_tuned_to(&view, &scene);
+        let tuned = View {
+            scene: &scene,
+            place: Place::of_state(*view.time, state),
+            ..view
+        };
+        M::check_state(&tuned).map_err(|why| {
+            Fault::error(format!("{name} = {} cannot be set: {why}", Shortest(value)))
+        })?;
+        Ok((state != M::state(&view)).then_some(state))
+    }
+
+    /// Puts the state that the host integrates elsewhere.
+    fn jump_to(&mut self, state: M::State) {
+        if let Simulation::Exchange(now) = &mut self.simulation {
+            (now.state, now.states_changed) = (state, true);
         }
-        Ok(())
     }
 
     /// Counts the time of the drive from the present communication point on.
@@ -364,6 +380,22 @@ impl<M: Model> Instance<M> {
         }
         Ok(())
     }
+}
+
+/// Why a result is no number: there is no motion at the state, or what it is worked out from is
+/// beyond the range of numbers.
+#[cold]
+fn cannot_be_worked_out<M: Model>(view: &View<M>, variable: &Variable<M>) -> Fault {
+    Fault::discard(match M::check_state(view) {
+        Err(why) => format!("{why}; try a shorter step"),
+        Ok(()) => format!(
+            "{} cannot be worked out at {}: it leads beyond the largest number, {:e}; try a shorter \
+             step, or parameters nearer to their typical sizes",
+            variable.name,
+            view.state_in_words(),
+            f64::MAX
+        ),
+    })
 }
 
 /// Why a variable cannot be set, or not any more.

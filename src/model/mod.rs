@@ -13,10 +13,11 @@ use std::fmt::Debug;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use self::variables::{Alias, Variable};
+use self::variables::{Access, Alias, Kind, Variable};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::arithmetic::number::Number;
+use crate::shortest::Shortest;
 use crate::solver::State;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
@@ -158,6 +159,20 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
 
     /// The present state.
     fn state(view: &View<Self>) -> Self::State;
+
+    /// The present state, where the host tunes parameters to those of `scene`: what becomes a state
+    /// by that has the value that it has.
+    fn state_tuned_to(view: &View<Self>, _scene: &Self::Scene) -> Self::State {
+        Self::state(view)
+    }
+
+    /// The typical size of a state, by its place, of the actuator of a scene.
+    fn nominal(_scene: &Self::Scene, place: usize) -> f64 {
+        match Self::VARIABLES[Self::STATES[place] as usize].kind {
+            Kind::Real { nominal, .. } => nominal,
+            Kind::Boolean | Kind::Enumeration(_) => 1.0,
+        }
+    }
 
     /// The present as it changes in a direction.
     fn along(view: &View<Self>, direction: &Direction<Self>) -> Self::Sample<Dual>;
@@ -339,6 +354,26 @@ impl<M: Model> Clone for View<'_, M> {
 }
 
 impl<M: Model> Copy for View<'_, M> {}
+
+impl<M: Model> View<'_, M> {
+    /// A result by its value reference, with its value, for messages.
+    #[must_use]
+    pub fn in_words(&self, reference: u32) -> String {
+        let variable = &M::VARIABLES[reference as usize];
+        let value = match variable.access {
+            Access::Result { get, .. } | Access::Input { get, .. } => get(self),
+            Access::Setting { get, .. } => get(self.scene),
+        };
+        format!("{} = {}", variable.name, Shortest(value))
+    }
+
+    /// The present state, for messages.
+    #[must_use]
+    pub fn state_in_words(&self) -> String {
+        let states = M::STATES.iter().map(|state| self.in_words(*state));
+        states.collect::<Vec<_>>().join(", ")
+    }
+}
 
 /// A direction in which the scene and the state may change: each number is the rate of change of
 /// the one in its place.

@@ -6,13 +6,13 @@ use super::SiScene;
 use crate::actuator::device::{Device, Source};
 use crate::actuator::scales::{Scales, SiDevice};
 
-/// What the host has described.
-type Described = (SiDevice, [f64; 3], Source);
+/// What the host has described: the device, J, κ2 and κ3, and the source.
+pub(super) type Described = (SiDevice, [f64; 3], Source);
 
 /// An actuator in nondimensional numbers and their units.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Folded {
-    of: Described,
+    pub of: Described,
     pub device: Device,
     pub scales: Scales,
     /// The thickness of the stack before deformation, in m.
@@ -31,14 +31,19 @@ impl PartialEq for Memory {
 }
 
 impl SiScene {
+    /// Whether the actuator is still the one that was described so.
+    pub(super) fn is_still(&self, (device, stiffening, source): &Described) -> bool {
+        self.device == *device && self.stiffening == *stiffening && self.source() == *source
+    }
+
     /// The actuator in nondimensional numbers.
     pub(super) fn folded(&self) -> Folded {
-        let of = (self.device, self.stiffening, self.source());
         if let Some(known) = self.memory.0.get()
-            && known.of == of
+            && self.is_still(&known.of)
         {
             return known;
         }
+        let of = (self.device, self.stiffening, self.source());
         let described = self.described();
         let folded = Folded {
             of,

@@ -12,6 +12,8 @@ mod thresholds;
 mod trajectory;
 mod view;
 
+use folded::Folded;
+
 pub use account::SiAccount;
 pub use motion::SiMotion;
 pub use sample::Sample;
@@ -247,19 +249,35 @@ impl Model for Si {
             let value = read(row);
             !value.is_finite() || value.abs() >= FAR * nominal || min >= 0.0 && value <= 0.0
         };
-        let said = |row: &u32| {
-            let name = VARIABLES[*row as usize].name;
-            format!("{name} = {}", Shortest(read(row)))
+        let state = match Si::STATES.iter().find(far) {
+            Some(state) => view.in_words(*state),
+            None => view.state_in_words(),
         };
-        let state: Vec<String> = match Si::STATES.iter().find(far) {
-            Some(row) => vec![said(row)],
-            None => Si::STATES.iter().map(said).collect(),
-        };
-        Err(format!("there is no motion at {}", state.join(", ")))
+        Err(format!("there is no motion at {state}"))
     }
 
     fn state(view: &View<Si>) -> SiState {
         view.state()
+    }
+
+    /// A charge that becomes a state is that on the electrodes.
+    fn state_tuned_to(view: &View<Si>, scene: &SiScene) -> SiState {
+        let [was, is] = [view.scene, scene].map(|scene| scene.folded().device.has_charge_state());
+        let mut state = view.state();
+        if is && !was {
+            state.charge = view.charge();
+        }
+        state
+    }
+
+    fn nominal(scene: &SiScene, place: usize) -> f64 {
+        let Folded { device, scales, .. } = scene.folded();
+        match place {
+            // Of a swing by as much as the actuator is long.
+            1 => (6.0 / (device.sheet.aspect + 2.0)).sqrt() / scales.time,
+            2 => scales.charge,
+            _ => 1.0,
+        }
     }
 
     fn along(view: &View<Si>, direction: &Direction<Si>) -> Sample<Dual> {

@@ -15,30 +15,45 @@ use crate::solver::coupled::Stage;
 
 macro_rules! sample {
     (
+        of the stretch { $($(#[$at:meta])* $placed:ident,)* }
         of the motion { $($(#[$of:meta])* $moved:ident,)* }
         of everything { $($(#[$about:meta])* $name:ident,)* }
     ) => {
         /// The distances and rates at one time, of the stretch and its rate alone.
         struct Geometry<N> {
+            $($placed: N,)*
             $($moved: N,)*
         }
 
         impl View<'_, Si> {
+            $($(#[$at])*
+            #[must_use]
+            pub fn $placed(&self) -> f64 {
+                self.placed().$placed
+            })*
+
             $($(#[$of])*
             #[must_use]
             pub fn $moved(&self) -> f64 {
-                self.geometry().$moved
+                self.geometry(self.motion()).$moved
             })*
         }
 
         /// The actuator at one time, as numbers that may carry their derivatives along.
         #[derive(Clone, Copy, Debug)]
         pub struct Sample<N> {
+            $($(#[$at])* pub $placed: N,)*
             $($(#[$of])* pub $moved: N,)*
             $($(#[$about])* pub $name: N,)*
         }
 
         impl<N: Number> Sample<N> {
+            $($(#[$at])*
+            #[must_use]
+            pub fn $placed(&self) -> N {
+                self.$placed
+            })*
+
             $($(#[$of])*
             #[must_use]
             pub fn $moved(&self) -> N {
@@ -63,23 +78,25 @@ macro_rules! sample {
 }
 
 sample! {
-    of the motion {
+    of the stretch {
     /// λ.
     stretch,
-    /// dλ/dt in 1/s.
-    stretch_rate,
     /// λ3 = 1/λ².
     thickness_stretch,
-    /// dλ3/dt = −2λ⁻³ dλ/dt in 1/s.
-    thickness_stretch_rate,
     /// The distance of opposite edges in m.
     edge_distance,
     /// By how much it has grown, in m.
     edge_displacement,
-    /// Its rate in m/s.
-    edge_velocity,
     /// The thickness of the stack in m.
     thickness,
+    }
+    of the motion {
+    /// dλ/dt in 1/s.
+    stretch_rate,
+    /// dλ3/dt = −2λ⁻³ dλ/dt in 1/s.
+    thickness_stretch_rate,
+    /// The rate of the distance of opposite edges in m/s.
+    edge_velocity,
     }
     of everything {
     /// d²λ/dt² in 1/s².
@@ -123,6 +140,7 @@ sample! {
 
 impl<N: Number> Geometry<N> {
     /// From the stretch and its rate, the side and the thickness before deformation.
+    #[inline(always)]
     fn of(stretch: N, rate: N, side: N, stack: N) -> Geometry<N> {
         let one = stretch.same(1.0);
         let square = stretch * stretch;
@@ -311,12 +329,20 @@ impl<P: Parameter> Basis<P> {
 }
 
 impl View<'_, Si> {
-    /// What follows from the motion alone, without the rest.
-    fn geometry(&self) -> Geometry<f64> {
-        let State { position, rate } = self.motion();
+    #[inline(always)]
+    fn geometry(&self, State { position, rate }: State) -> Geometry<f64> {
         let device = &self.scene.device;
         let stack = device.layers * device.thickness;
         Geometry::of(position, rate, device.side, stack)
+    }
+
+    /// The geometry without the rates, which take as long to find out.
+    #[inline(always)]
+    fn placed(&self) -> Geometry<f64> {
+        self.geometry(State {
+            position: self.present_stretch(),
+            rate: 0.0,
+        })
     }
 
     /// All quantities at the present.

@@ -84,6 +84,10 @@ impl SiTrajectory {
         }
     }
 
+    pub fn position(&self) -> f64 {
+        either!(self, trajectory => trajectory.position())
+    }
+
     pub fn state(&self) -> State {
         either!(self, trajectory => trajectory.state())
     }
@@ -123,8 +127,16 @@ impl SiTrajectory {
         either!(self, trajectory => trajectory.restart());
     }
 
-    /// Follows the motion for a nondimensional time, and its clock with it.
-    pub fn advance(
+    /// Follows the motion for a nondimensional time where it stays in its step and meets nothing;
+    /// tells whether it does.
+    #[inline]
+    pub fn advance_inside_step(&mut self, step: f64) -> bool {
+        either!(self, trajectory => trajectory.advance_inside_step(step))
+    }
+
+    /// Follows it, and its clock with it, where [`SiTrajectory::advance_inside_step`] has told that it leaves
+    /// its step.
+    pub fn advance_beyond_step(
         &mut self,
         motion: &DeviceMotion,
         clock: &mut DoubleDouble,
@@ -132,9 +144,6 @@ impl SiTrajectory {
     ) -> Result<Progress<coupled::Event>, Failure> {
         match self {
             SiTrajectory::Plain(trajectory) => {
-                if trajectory.advance_inside_step(clock, step) {
-                    return Ok(Progress::Whole);
-                }
                 let progress = trajectory.advance_beyond_step(&motion.plain(), clock, step)?;
                 Ok(match progress {
                     Progress::Whole => Progress::Whole,
@@ -144,7 +153,9 @@ impl SiTrajectory {
                     },
                 })
             }
-            SiTrajectory::Coupled(trajectory) => trajectory.advance(motion, clock, step),
+            SiTrajectory::Coupled(trajectory) => {
+                trajectory.advance_beyond_step(motion, clock, step)
+            }
         }
     }
 

@@ -41,11 +41,19 @@ impl View<'_, Si> {
     /// The stretch and its rate at present.
     pub(super) fn motion(&self) -> State {
         let mut motion = match self.place {
-            Place::On(motion) => motion.stretch(),
+            Place::On(motion) => motion.stretch_and_rate(),
             Place::At { state, .. } => state.motion,
         };
         self.hold(&mut motion);
         motion
+    }
+
+    /// The stretch at present, without its rate.
+    pub(super) fn present_stretch(&self) -> f64 {
+        match self.place {
+            Place::On(motion) if self.collapse.is_none() => motion.stretch(),
+            _ => self.motion().position,
+        }
     }
 
     fn hold(&self, motion: &mut State) {
@@ -235,6 +243,7 @@ impl SiScene {
         }
         let described = self.described();
         self.check_size(&Scales::of(&described))?;
+        self.check_leak()?;
         let device = described.nondimensional();
         if let Elasticity::Gent(locking) = &device.elasticity {
             let [low, high] = [locking.smallest(), locking.largest()].map(|wall| wall.value());
@@ -257,10 +266,11 @@ impl SiScene {
         {
             let [value, _] = permittivity.at(stretch);
             if value <= 0.0 {
+                let [k1, k2, k3] = permittivity.terms.map(Shortest);
                 return Err(format!(
-                    "k1, k2 and k3 make the permittivity {} of what it is at 1 where the stretch \
-                     is {}; it must stay above 0 up to lambda_max = {upper}, set that lower or \
-                     other k",
+                    "k1 = {k1}, k2 = {k2} and k3 = {k3} make the permittivity {} of what it is at 1 \
+                     where the stretch is {}; it must stay above 0 between lambda_min = {lower} and \
+                     lambda_max = {upper}, set these nearer to 1 or other k",
                     Shortest(value),
                     Shortest(stretch)
                 ));
@@ -321,6 +331,28 @@ impl SiScene {
         Ok(())
     }
 }
+
+impl SiScene {
+    /// Refuses a conductivity that grows beyond all bounds in the field of the supply voltage.
+    fn check_leak(&self) -> Result<(), String> {
+        let (limit, voltage) = (self.device.conduction_field, self.sources[0].value());
+        let field = voltage.abs() / self.device.thickness;
+        if self.source() != Source::Voltage || limit == 0.0 || field <= MOST_FIELDS * limit {
+            return Ok(());
+        }
+        Err(format!(
+            "E_conduction = {} V/m is out of proportion to the field voltage/H = {} V/m, in which the \
+             conductivity would grow by e^{:.0}; set 0 or at least {} V/m, or check voltage and H",
+            Shortest(limit),
+            Shortest(field),
+            field / limit,
+            Shortest(rounded(1.1 * field / MOST_FIELDS))
+        ))
+    }
+}
+
+/// Largest field at the start, in units of E_conduction.
+const MOST_FIELDS: f64 = 100.0;
 
 /// Largest voltage at the start, in units of V0: pull-in lies near 0.7.
 const MOST_VOLTAGE: f64 = 10.0;

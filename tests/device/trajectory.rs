@@ -124,6 +124,29 @@ fn restarts_at_every_step_keep_the_tolerance() {
     }
 }
 
+/// A step of no length to speak of, as rounding leaves them of communication steps, says nothing about the next one.
+#[test]
+fn a_step_that_rounding_has_left_leads_nowhere() {
+    for name in ["B_rc_step", "D_kv_step", "own_stiff_rc", "own_everything"] {
+        let scene = Scene::of(&read(name));
+        let motion = scene.motion(false);
+        let mut undisturbed = start(&motion, scene.charge, 1e-9);
+        let mut trajectory = start(&motion, scene.charge, 1e-9);
+        for k in 0..200 {
+            for step in [2.0, 3e-17, 5.0] {
+                trajectory.restart();
+                for _ in 0..2 {
+                    let progress = trajectory.advance(&motion, step);
+                    assert_eq!(progress, Ok(Progress::Whole));
+                    undisturbed.advance(&motion, step).expect("a step");
+                }
+            }
+            let error = trajectory.position() - undisturbed.position();
+            assert!(error.abs() < 1e-8, "{name} {k}: {error:e}");
+        }
+    }
+}
+
 /// The true field φλ² of an ideal source reaches breakdown at a stretch that is known, once.
 #[test]
 fn breakdown_is_located() {

@@ -290,6 +290,69 @@ fn states_are_set_by_value_reference() {
     assert!((host.get("charge") - 3e-12).abs() < 1e-26);
 }
 
+/// The charge becomes a state on the way: it is the one that was on the electrodes, and the host is told.
+#[test]
+fn a_resistance_switched_on_keeps_the_charge() {
+    let mut integrator = Integrator::begun(&[("force", 1e-5)]);
+    for _ in 0..100 {
+        integrator.step(5e-9);
+    }
+    let before = integrator.host.get("charge");
+    let instance = &mut integrator.host.instance;
+    instance.enter_event_mode();
+    assert!(
+        !instance
+            .new_discrete_states()
+            .expect("an update")
+            .states_changed
+    );
+    integrator.host.set("R_s", 1e7).expect("a resistance");
+    let instance = &mut integrator.host.instance;
+    assert!(
+        instance
+            .new_discrete_states()
+            .expect("an update")
+            .states_changed
+    );
+    assert!(
+        !instance
+            .new_discrete_states()
+            .expect("an update")
+            .states_changed
+    );
+    for name in ["charge", "charge_state"] {
+        let after = integrator.host.get(name);
+        assert!(
+            before > 1e-12 && (after / before - 1.0).abs() < 1e-14,
+            "{name}: {after} {before}"
+        );
+    }
+    // Without a voltage across the resistance no current flows.
+    assert!(integrator.host.get("supply_current").abs() < 1e-16);
+}
+
+/// Of the actuator that it is: its charge unit, and a swing by its length in a period.
+#[test]
+fn nominals_are_those_of_the_actuator() {
+    for (side, thickness) in [(100e-6, 10e-6), (20e-3, 100e-6)] {
+        let host = Host::initializing(Interface::ModelExchange, &[("L", side), ("H", thickness)]);
+        let mut nominals = [0.0; STATES];
+        host.instance
+            .nominals_of_states(&mut nominals)
+            .expect("nominals");
+        let permittivity = 2.8 * 8.854_187_818_8e-12;
+        let charge = side * side * f64::sqrt(permittivity * 303e3);
+        let frequency =
+            f64::sqrt(72.0 * 303e3 / (1100.0 * (side * side + 2.0 * thickness * thickness)));
+        for (place, expected) in [(0, 1.0), (1, frequency), (2, charge), (3, 1.0)] {
+            assert!(
+                (nominals[place] / expected - 1.0).abs() < 1e-12,
+                "{place}: {nominals:?}"
+            );
+        }
+    }
+}
+
 /// A changed frequency leaves the voltage where it is.
 #[test]
 fn the_phase_runs_on_through_a_changed_frequency() {

@@ -1,7 +1,7 @@
 //! What cannot be meant is refused with the variable, the value, the limit and what to do.
 
-use crate::host::Host;
-use dielectric_elastomer_actuator::instance::Interface;
+use crate::host::{Host, row};
+use dielectric_elastomer_actuator::instance::{Interface, Type};
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{Access, Kind, Meant};
 use dielectric_elastomer_actuator::si::Si;
@@ -116,9 +116,16 @@ fn contradictory_choices_say_which_to_change() {
         (vec![("force", 2.0)], ["force = 2 N", "0.03 N"]),
         (
             vec![("k1", -0.9), ("k2", 0.2), ("lambda_max", 6.0)],
-            ["k1", "where the stretch is 3.25"],
+            [
+                "k1 = -0.9, k2 = 0.2 and k3 = 0",
+                "where the stretch is 3.25",
+            ],
         ),
-        (vec![("k1", -0.2)], ["k1", "lambda_max = 10"]),
+        (vec![("k1", -0.2)], ["k1 = -0.2", "lambda_max = 10"]),
+        (
+            vec![("E_conduction", 1e4), ("G_p", 1e-10)],
+            ["E_conduction = 10000 V/m", "at least 660000 V/m"],
+        ),
         (
             vec![("lambda_start", 20.0)],
             ["lambda_start = 20", "lambda_max = 10"],
@@ -133,6 +140,27 @@ fn contradictory_choices_say_which_to_change() {
         let text = format!("{fault:?}");
         assert!(parts.iter().all(|part| text.contains(part)), "{text}");
     }
+}
+
+/// What is beyond the largest number is named, with the state and what to do; the rest can be read.
+#[test]
+fn a_result_that_is_no_number_is_named() {
+    let values = [("voltage", 0.0), ("E_conduction", 1e4), ("sigma", 1e-9)];
+    let mut host = Host::begun(&values);
+    host.set("voltage", 600.0).expect("a voltage");
+    let (reference, _) = row("lost_power");
+    let fault = host.instance.get(Type::Real, &[reference], |_, _| ());
+    let text = fault.expect_err("no number").text;
+    for part in [
+        "lost_power",
+        "lambda = 1,",
+        "charge_state = 0",
+        "1.7976931348623157e308",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+    host.step(1e-7);
+    assert!(host.get("lambda") > 1.0);
 }
 
 /// A parameter with which there is no motion from where the actuator is: refused, and the motion

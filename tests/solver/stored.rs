@@ -53,6 +53,22 @@ fn a_stored_motion_goes_on_bit_for_bit() {
     }
 }
 
+/// A host that changes its inputs at two successive steps, and then never again: the further steps
+/// are those of dense output, which a held step only moves along.
+#[test]
+fn steps_are_held_again_after_inputs_were_changed() {
+    let mut trajectory = begun(1e-9);
+    for _ in 0..2 {
+        advance(&mut trajectory, &alternating(), 0.01);
+        assert!(trajectory.stored_state().is_some());
+        trajectory.restart();
+    }
+    advance(&mut trajectory, &alternating(), 0.01);
+    assert!(trajectory.stored_state().is_some());
+    advance(&mut trajectory, &alternating(), 0.01);
+    assert!(trajectory.stored_state().is_none());
+}
+
 /// Numbers that do not fit together as those of one motion are noticed.
 #[test]
 fn a_forged_motion_is_not_valid() {

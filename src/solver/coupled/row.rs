@@ -14,6 +14,20 @@ use crate::solver::tables::Columns;
 /// Nodes in a register.
 const LANES: usize = 8;
 
+/// Rows of the unit matrix; fewer nodes take the begin of a row.
+static UNITS: [[f64; UNIT_NODES]; UNIT_NODES] = {
+    let mut units = [[0.0; UNIT_NODES]; UNIT_NODES];
+    let mut node = 0;
+    while node < UNIT_NODES {
+        units[node][node] = 1.0;
+        node += 1;
+    }
+    units
+};
+
+/// The largest number of nodes.
+const UNIT_NODES: usize = 16;
+
 /// A number for each of 8 R nodes, in R registers.
 #[derive(Clone, Copy)]
 pub(super) struct Row<S: Simd, const R: usize>([f64x8<S>; R]);
@@ -23,6 +37,12 @@ impl<S: Simd, const R: usize> Row<S, R> {
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn fill(simd: S, value: f64) -> Self {
         Row([f64x8::fill(simd, value); R])
+    }
+
+    /// 1 at this node, 0 at the others.
+    #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
+    pub fn unit(simd: S, node: usize) -> Self {
+        Row::load::<UNIT_NODES>(simd, &UNITS[node])
     }
 
     /// These numbers.

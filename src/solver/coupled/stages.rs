@@ -33,6 +33,9 @@ const STATES_WORK: u32 = 4;
 /// found at once, the second one of another that is not.
 const UNKNOWN_RATE: f64 = 0.1;
 
+/// The first guess bends the motion by no more than this part of its size.
+const FARTHEST_GUESS: f64 = 0.5;
+
 /// A change that is a small multiple of rounding tells nothing of the convergence.
 const NOISE: f64 = 16.0;
 
@@ -225,6 +228,12 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         };
     }
     let mut bent = Row::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
+    // A guess that leads far away may look like a solution: what Newton's method makes of it hardly moves.
+    let is_near = bent.largest() <= FARTHEST_GUESS * sizes.position;
+    if !is_near {
+        motion = StageValues::constant(simd);
+        bent = fill(0.0);
+    }
     let mut at = Stage {
         position: fill(position) + (drift + bent),
         rate: fill(rate) + motion.gain,
@@ -244,7 +253,8 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         if iteration != Iteration::FixedPoint && (newton.is_none() || is_slow) {
             let whole = iteration == Iteration::Newton;
             let (step, equation) = ((rule, half), (local, load, states));
-            newton = Some(Newton::at(simd, step, equation, &at, sizes, whole)?);
+            let matrices = newton.get_or_insert(Newton::NONE);
+            matrices.make(simd, step, equation, &at, sizes, whole)?;
             contraction = 0.0;
             *work += if whole { NEWTON_WORK } else { STATES_WORK };
         }

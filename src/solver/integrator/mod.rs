@@ -258,15 +258,14 @@ impl<M: Method> Integrator<M> {
         self.mode = Mode::UNKNOWN;
     }
 
-    /// Follows the motion for the time `step` from `clock` where it stays in its step and meets
-    /// nothing; tells whether it does.
+    /// Follows the motion for the time `step` where it stays in its step and meets nothing; tells
+    /// whether it does. The clock is then to be moved by as much.
     #[inline(always)]
-    pub(crate) fn advance_inside_step(&mut self, clock: &mut DoubleDouble, step: f64) -> bool {
+    pub(crate) fn advance_inside_step(&mut self, step: f64) -> bool {
         self.advances = self.advances.saturating_add(1);
         if step < self.time_left {
             self.time_left -= step;
             self.now = self.now.plus(self.mode.direction() * step);
-            *clock = clock.plus(step);
             return true;
         }
         false
@@ -305,6 +304,9 @@ impl<M: Method> Integrator<M> {
     ) -> Result<Progress<M::Event>, Failure> {
         if self.history.is_empty() {
             self.time_origin = *clock;
+        }
+        if self.advances > 1 {
+            self.restarts_at_every_step = false;
         }
         match self.mode {
             Mode::Dense { .. } => {}

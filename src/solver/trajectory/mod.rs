@@ -130,7 +130,8 @@ impl Trajectory {
         clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
-        if self.advance_inside_step(clock, step) {
+        if self.advance_inside_step(step) {
+            *clock = clock.plus(step);
             return Ok(Progress::Whole);
         }
         self.advance_beyond_step(equation, clock, step)

@@ -22,8 +22,9 @@ const FIRST_STEP: f64 = 1.5;
 /// First step after a jump, in units of the relaxation time.
 const FIRST_RELAXATION: f64 = 0.5;
 
-/// A step shorter than this part of the time scale cannot go on: transients are much shorter.
-const SHORTEST_TRANSIENT: f64 = 1e-14;
+/// A step shorter than this part of the time scale cannot go on: no transient is shorter, which a resistance of
+/// a milliohm makes at a load of a hundred kilograms.
+const SHORTEST_TRANSIENT: f64 = 1e-28;
 
 /// A state that relaxes by less than this part in half a step does not hamper fixed-point iteration.
 const SLOW_RELAXATION: f64 = 0.25;
@@ -37,6 +38,10 @@ const ERROR_NOISE: f64 = 32.0 * f64::EPSILON;
 
 /// Steps that the error allows to be longer by this factor than fixed-point iteration does are left to Newton's method.
 const MUCH_LONGER: f64 = 3.0;
+
+/// Steps longer than the last one by more than this factor do not go on from its slopes: what was cut short, or is left
+/// of a communication step by rounding, says nothing about them.
+const MOST_LONGER: f64 = 4.0;
 
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
@@ -167,7 +172,9 @@ impl Trajectory {
                 integrals: method.integrals,
                 sizes: &sizes,
                 tolerance: IterationTolerance::new(control.end_tolerance_within(part), ROUNDED),
-                before: before.as_ref(),
+                before: before
+                    .as_ref()
+                    .filter(|last| length <= 2.0 * MOST_LONGER * last.half),
             };
             let fast = |relaxation: f64| 0.5 * length * relaxation > SLOW_RELAXATION;
             let iteration = if fast(damping) {

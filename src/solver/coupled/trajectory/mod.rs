@@ -132,6 +132,21 @@ impl Trajectory {
         self.advance_within(equation, clock, step, &mut work)
     }
 
+    /// The rest of [`Trajectory::advance`], where [`Integrator::advance_inside_step`] has told that the
+    /// motion leaves its step.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn advance_beyond_step<E: CoupledEquation>(
+        &mut self,
+        equation: &E,
+        clock: &mut DoubleDouble,
+        step: f64,
+    ) -> Result<Progress, Failure> {
+        let mut work = Carried::MOST_STEPS;
+        self.advance_beyond_step_within(equation, clock, step, &mut work)
+    }
+
     /// [`Trajectory::advance`] with no more than this `work`, in iterations, from which what is done is
     /// taken.
     ///
@@ -144,9 +159,20 @@ impl Trajectory {
         step: f64,
         work: &mut u32,
     ) -> Result<Progress, Failure> {
-        if self.advance_inside_step(clock, step) {
+        if self.advance_inside_step(step) {
+            *clock = clock.plus(step);
             return Ok(Progress::Whole);
         }
+        self.advance_beyond_step_within(equation, clock, step, work)
+    }
+
+    fn advance_beyond_step_within<E: CoupledEquation>(
+        &mut self,
+        equation: &E,
+        clock: &mut DoubleDouble,
+        step: f64,
+        work: &mut u32,
+    ) -> Result<Progress, Failure> {
         let beside = STEP_WORK
             + if equation.integrals() > 0 || equation.awaits_event() {
                 STEP_WORK
