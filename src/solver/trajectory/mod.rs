@@ -28,6 +28,10 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
+/// A step this many times as long as the one before does not start from its f: the series of a step that
+/// only made up for rounding, 1e-17 long, gives no guess.
+const FARTHEST_GUESS: f64 = 4.0;
+
 /// After a short step that was refused, the next 14 of its length are not tried.
 const FORGOTTEN: f64 = 1.05;
 
@@ -339,13 +343,16 @@ impl Trajectory {
         };
         let most = most.min(local.longest_substep());
         let shortest = (SHORTEST * free).min(0.5 * most);
+        let longest = free.min(most);
         let last = self.history.steps().last();
-        let before = last.map(|step| step.segment.series());
+        let before = last
+            .map(|step| step.segment.series())
+            .filter(|before| longest <= FARTHEST_GUESS * 2.0 * before.half);
         let Accepted {
             step,
             length,
             factor,
-        } = first_accepted(free.min(most), shortest, |length| {
+        } = first_accepted(longest, shortest, |length| {
             let task = Task {
                 start: state,
                 length,
