@@ -154,7 +154,8 @@ impl SiTrajectory {
                 })
             }
             SiTrajectory::Coupled(trajectory) => {
-                trajectory.advance_beyond_step(motion, clock, step)
+                let mut work = coupled::MOST_WORK;
+                trajectory.advance_beyond_step(motion, clock, step, &mut work)
             }
         }
     }

@@ -67,6 +67,16 @@ pub const SHORTEST: f64 = 1e-12;
 /// By what a step is shortened that says nothing about how long it may be.
 pub const HALVED: f64 = 0.5;
 
+/// A step longer than the one before by more than this factor does not take its first guess from there.
+const MOST_LONGER: f64 = 4.0;
+
+/// Whether a step of this length may go on from the f of the step before, half of whose length is given.
+/// One that was cut short says nothing about much longer ones: rounding leaves some of 1e-17.
+#[must_use]
+pub fn goes_on_from(half: f64, length: f64) -> bool {
+    length <= 2.0 * MOST_LONGER * half
+}
+
 /// Attempts steps of this length and shorter ones, until one is accepted. An attempt returns the
 /// step and by which factor the next one may be longer, or by which factor to shorten this one.
 ///

@@ -20,7 +20,7 @@ mod stage_values;
 pub mod stages;
 pub mod trajectory;
 
-pub use trajectory::{Event, Failure, Progress, Trajectory};
+pub use trajectory::{Event, Failure, MOST_WORK, Progress, Trajectory};
 
 use serde::{Deserialize, Serialize};
 

@@ -16,7 +16,7 @@ use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
-use super::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted};
+use super::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted, goes_on_from};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
@@ -27,10 +27,6 @@ const FIRST_STEP: f64 = 2.0;
 
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
-
-/// A step this many times as long as the one before does not start from its f: the series of a step that
-/// only made up for rounding, 1e-17 long, gives no guess.
-const FARTHEST_GUESS: f64 = 4.0;
 
 /// After a short step that was refused, the next 14 of its length are not tried.
 const FORGOTTEN: f64 = 1.05;
@@ -347,7 +343,7 @@ impl Trajectory {
         let last = self.history.steps().last();
         let before = last
             .map(|step| step.segment.series())
-            .filter(|before| longest <= FARTHEST_GUESS * 2.0 * before.half);
+            .filter(|before| goes_on_from(before.half, longest));
         let Accepted {
             step,
             length,

@@ -1,6 +1,6 @@
 //! First-order states, integrals and slopes at the present time.
 
-use super::{Carried, Trajectory};
+use super::{Carried, MOST_WORK, Trajectory};
 use crate::solver::coupled::polynomials::{Coefficients, Polynomials, sum};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
@@ -76,8 +76,7 @@ impl Method for Carried {
     type Event = super::Event;
     type Origin = crate::arithmetic::double_double::DoubleDouble;
 
-    /// Counted in iterations: about a second of work.
-    const MOST_STEPS: u32 = 600_000;
+    const MOST_STEPS: u32 = MOST_WORK;
 
     fn is_valid(&self, motion: &Trajectory) -> bool {
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());

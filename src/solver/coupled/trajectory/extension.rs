@@ -10,7 +10,9 @@ use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, S
 use crate::solver::dense_output::Segment;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
-use crate::solver::step_control::{Accepted, HALVED, SLOW, StepControl, first_accepted, judge};
+use crate::solver::step_control::{
+    Accepted, HALVED, SLOW, StepControl, first_accepted, goes_on_from, judge,
+};
 
 /// Part of the tolerance that one step may spend between its ends: a motion may swing by much
 /// less than its position is large. With 16 nodes that costs a tenth more steps.
@@ -38,10 +40,6 @@ const ERROR_NOISE: f64 = 32.0 * f64::EPSILON;
 
 /// Steps that the error allows to be longer by this factor than fixed-point iteration does are left to Newton's method.
 const MUCH_LONGER: f64 = 3.0;
-
-/// Steps longer than the last one by more than this factor do not go on from its slopes: what was cut short, or is left
-/// of a communication step by rounding, says nothing about them.
-const MOST_LONGER: f64 = 4.0;
 
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
@@ -174,7 +172,7 @@ impl Trajectory {
                 tolerance: IterationTolerance::new(control.end_tolerance_within(part), ROUNDED),
                 before: before
                     .as_ref()
-                    .filter(|last| length <= 2.0 * MOST_LONGER * last.half),
+                    .filter(|last| goes_on_from(last.half, length)),
             };
             let fast = |relaxation: f64| 0.5 * length * relaxation > SLOW_RELAXATION;
             let iteration = if fast(damping) {

@@ -6,7 +6,7 @@ use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::dense_output::History;
-use crate::solver::integrator::{Integrator, Method, Mode};
+use crate::solver::integrator::{Integrator, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
 use crate::solver::outcome::Progress as PlainProgress;
@@ -17,6 +17,9 @@ mod extension;
 
 /// The work of a step beside its iterations, in iterations.
 const STEP_WORK: u32 = 4;
+
+/// Iterations that an advance may take: about a second of work.
+pub const MOST_WORK: u32 = 600_000;
 
 /// Why a motion stops before the time asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -128,23 +131,8 @@ impl Trajectory {
         clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
-        let mut work = Carried::MOST_STEPS;
+        let mut work = MOST_WORK;
         self.advance_within(equation, clock, step, &mut work)
-    }
-
-    /// The rest of [`Trajectory::advance`], where [`Integrator::advance_inside_step`] has told that the
-    /// motion leaves its step.
-    ///
-    /// # Errors
-    /// As there.
-    pub(crate) fn advance_beyond_step<E: CoupledEquation>(
-        &mut self,
-        equation: &E,
-        clock: &mut DoubleDouble,
-        step: f64,
-    ) -> Result<Progress, Failure> {
-        let mut work = Carried::MOST_STEPS;
-        self.advance_beyond_step_within(equation, clock, step, &mut work)
     }
 
     /// [`Trajectory::advance`] with no more than this `work`, in iterations, from which what is done is
@@ -163,10 +151,15 @@ impl Trajectory {
             *clock = clock.plus(step);
             return Ok(Progress::Whole);
         }
-        self.advance_beyond_step_within(equation, clock, step, work)
+        self.advance_beyond_step(equation, clock, step, work)
     }
 
-    fn advance_beyond_step_within<E: CoupledEquation>(
+    /// The rest of [`Trajectory::advance_within`], where [`Integrator::advance_inside_step`] has told that
+    /// the motion leaves its step.
+    ///
+    /// # Errors
+    /// As there.
+    pub(crate) fn advance_beyond_step<E: CoupledEquation>(
         &mut self,
         equation: &E,
         clock: &mut DoubleDouble,
