@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::phase::Phase;
 use super::{Event, Fault, Instance, Simulation, check_time};
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::model::variables::Access;
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
 
@@ -283,9 +282,7 @@ impl<M: Model> Instance<M> {
         }
         let view = self.view();
         for (value, &row) in values.iter_mut().zip(rows) {
-            if let Access::Result { get, .. } = M::VARIABLES[row as usize].access {
-                *value = get(&view);
-            }
+            *value = M::VARIABLES[row as usize].value(&view);
         }
         Ok(())
     }

@@ -282,7 +282,7 @@ impl<M: Model> Instance<M> {
     #[inline(always)]
     fn followed(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
         let Simulation::Run(run) = &mut self.simulation else {
-            return Err(Fault::error("the initialization has not been ended".into()));
+            return Err(Fault::error("initialization has not ended".into()));
         };
         let deviation = run.check_step(current, step, self.experiment.stop_time)?;
         if deviation != 0.0 {

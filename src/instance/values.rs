@@ -134,10 +134,7 @@ impl<M: Model> Instance<M> {
         let mut no_number = None;
         for (place, &reference) in references.iter().enumerate() {
             let variable = typed::<M>(reference, wanted)?;
-            let value = match variable.access {
-                Access::Input { get, .. } | Access::Result { get, .. } => get(&view),
-                Access::Setting { get, .. } => get(view.scene),
-            };
+            let value = variable.value(&view);
             if value.is_nan() {
                 no_number.get_or_insert(variable);
             }

@@ -13,7 +13,7 @@ use std::fmt::Debug;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use self::variables::{Access, Alias, Kind, Variable};
+use self::variables::{Alias, Kind, Variable};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::arithmetic::number::Number;
@@ -360,11 +360,7 @@ impl<M: Model> View<'_, M> {
     #[must_use]
     pub fn in_words(&self, reference: u32) -> String {
         let variable = &M::VARIABLES[reference as usize];
-        let value = match variable.access {
-            Access::Result { get, .. } | Access::Input { get, .. } => get(self),
-            Access::Setting { get, .. } => get(self.scene),
-        };
-        format!("{} = {}", variable.name, Shortest(value))
+        format!("{} = {}", variable.name, Shortest(variable.value(self)))
     }
 
     /// The present state, for messages.

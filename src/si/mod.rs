@@ -26,7 +26,7 @@ use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::jet::{Dual, TimeSeries};
 use crate::arithmetic::number::Number;
 use crate::description::guid;
-use crate::model::variables::{self, Access, Alias, Kind, Variable};
+use crate::model::variables::{self, Alias, Kind, Variable};
 use crate::model::{AtLimit, DefaultExperiment, Direction, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
@@ -234,10 +234,7 @@ impl Model for Si {
         // Not what the motion remembers: the parameters may be others.
         let place = Place::of_state(*view.time, view.state());
         let view = View { place, ..*view };
-        let read = |row: &u32| match VARIABLES[*row as usize].access {
-            Access::Result { get, .. } => get(&view),
-            _ => 0.0,
-        };
+        let read = |row: &u32| VARIABLES[*row as usize].value(&view);
         if view.is_admitted() && Si::DERIVATIVES.iter().all(|row| read(row).is_finite()) {
             return Ok(());
         }

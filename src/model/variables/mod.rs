@@ -281,6 +281,16 @@ impl<M: Model> Variable<M> {
         }
     }
 
+    /// Its value at present.
+    #[must_use]
+    #[inline]
+    pub fn value(&self, view: &View<M>) -> f64 {
+        match self.access {
+            Access::Input { get, .. } | Access::Result { get, .. } => get(view),
+            Access::Setting { get, .. } => get(view.scene),
+        }
+    }
+
     /// Whether the host prescribes it as a function of time.
     #[must_use]
     pub const fn is_input(&self) -> bool {
