@@ -28,6 +28,10 @@ use crate::arithmetic::number::Number;
 /// resonance, 2000 times in the mean.
 const NEGLECTED_AT_END: f64 = 1000.0;
 
+/// (Δu)²/8 of the two nodes in the middle, the farthest from each other: x goes beyond both by this part of
+/// half²·|f| at most.
+const BETWEEN_NODES: f64 = 0.0046;
+
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.
 #[derive(Clone, Copy, Debug)]
@@ -80,12 +84,15 @@ impl Substep {
         self.lowest..=self.highest
     }
 
-    /// The range that holds the motion: between two nodes it may go a little
-    /// beyond both.
+    /// The range that holds the motion, which began at `start`: between two nodes it goes beyond both
+    /// by the bend of f at most.
     #[must_use]
-    pub fn reach(&self) -> RangeInclusive<f64> {
-        let beyond = 0.25 * (self.highest - self.lowest);
-        self.lowest - beyond..=self.highest + beyond
+    pub fn reach(&self, start: f64) -> RangeInclusive<f64> {
+        let Series { even, odd, .. } = &self.series;
+        let bend: f64 = even.iter().chain(odd).map(|a| a.abs()).sum();
+        let beyond = BETWEEN_NODES * bend;
+        let end = self.end.position;
+        self.lowest.min(start).min(end) - beyond..=self.highest.max(start).max(end) + beyond
     }
 }
 

@@ -1,6 +1,8 @@
 //! Dense output: the motion over one step as a polynomial, and the steps that are kept, one after
 //! another without a gap.
 
+use std::ops::RangeInclusive;
+
 use nalgebra::{SMatrixView, SVector};
 use serde::{Deserialize, Serialize};
 
@@ -192,15 +194,34 @@ impl Segment {
         }
     }
 
-    /// The positions at which the motion turns between two offsets.
-    pub fn turns(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
+    /// The positions at which the motion turns between two offsets, where they may lie outside this
+    /// range.
+    pub fn turns_outside(
+        &self,
+        range: RangeInclusive<f64>,
+        from: f64,
+        to: f64,
+    ) -> impl Iterator<Item = f64> + '_ {
         let parts = ((to - from) / self.length() * PARTS as f64).ceil() as usize;
         let part = (to - from) / parts.max(1) as f64;
         let border = move |i: usize| from + i as f64 * part;
         (0..parts).filter_map(move |i| {
             let (begin, end) = (border(i), border(i + 1));
-            let turns = self.rate(begin) * self.rate(end) < 0.0;
-            turns.then(|| self.position(crossing(begin, end, |offset| self.rate(offset))))
+            let rates = [self.rate(begin), self.rate(end)];
+            let turns = rates[0] * rates[1] < 0.0;
+            if !turns {
+                return None;
+            }
+            // The rate falls to 0 from both ends.
+            let beyond = part * rates[0].abs().max(rates[1].abs());
+            let ends = [self.position(begin), self.position(end)];
+            let inside = |position: f64| {
+                range.contains(&(position - beyond)) && range.contains(&(position + beyond))
+            };
+            if ends.into_iter().all(inside) {
+                return None;
+            }
+            Some(self.position(crossing(begin, end, |offset| self.rate(offset))))
         })
     }
 }

@@ -42,3 +42,31 @@ fn extremes_are_recorded_exactly_and_whatever_the_steps() {
         }
     }
 }
+
+/// Driven motions slow and fast, weak and strong: extremes that long steps find are those of a motion of
+/// which every turn is looked at.
+#[test]
+fn long_steps_pass_over_no_extreme() {
+    for frequency in [0.03, 0.11, 0.1438, 0.29, 0.7, 1.9, 6.0] {
+        for [amplitude, offset] in [[0.05, 0.0], [0.2, 0.0], [0.3, 0.1], [0.02, 0.55]] {
+            let mut motion = direct(SURFACE, offset, 0.0);
+            motion.drive.harmonic = alternating(SURFACE, amplitude, frequency).drive.harmonic;
+            for tolerance in [1e-4, 1e-6, 1e-9] {
+                let mut long = from_rest(tolerance).with(Trajectory::recording_extremes);
+                let mut dense = from_rest(tolerance)
+                    .with(Trajectory::recording_extremes)
+                    .with(Trajectory::without_endpoint_steps);
+                follow(&mut long, &motion, 400.0, 400.0);
+                follow(&mut dense, &motion, 400.0, 0.5);
+                let [long, dense] = [long, dense].map(|t| t.extremes().expect("recorded"));
+                for [found, known] in [[long.highest, dense.highest], [long.lowest, dense.lowest]] {
+                    let scene = format!("{frequency}, {amplitude}, {offset} at {tolerance:e}");
+                    assert!(
+                        (found - known).abs() < 20.0 * tolerance,
+                        "{scene}: {found}, {known}"
+                    );
+                }
+            }
+        }
+    }
+}

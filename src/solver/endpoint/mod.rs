@@ -259,16 +259,17 @@ impl EndpointSteps {
                 // is integrated wrongly, the square of what it has at degree 8, by its size.
                 let tail = sixth.abs() + seventh.abs();
                 let swing = largest::<S>(displacement);
-                let size = square * largest::<S>(g).max(slope.abs() * swing);
+                let parts = [largest::<S>(g), slope.abs() * swing].map(|part| square * part);
+                let size = parts[0].max(parts[1]);
                 let allowed = NEGLECTED_WITH_PLAN * end_tolerance * scale;
                 let error = tail * tail / (size * allowed).max(f64::MIN_POSITIVE);
                 if error <= 1.0 {
-                    Ok((stages, [moved, gained, swing], error))
+                    Ok((stages, [moved, gained, swing, parts[0] + parts[1]], error))
                 } else {
                     Err(shortened(error, ORDER))
                 }
             });
-            let (stages, [moved, gained, swing], error) = match attempt {
+            let (stages, [moved, gained, swing, bend], error) = match attempt {
                 Ok(solved) => solved,
                 Err(factor) => {
                     self.length = Some(factor * length);
@@ -284,7 +285,7 @@ impl EndpointSteps {
                 last_change,
                 ..
             } = stages;
-            if !stays_between::<S>(way.bounds, state.position, moved, swing, displacement) {
+            if !stays_between::<S>(way.bounds, state.position, moved, swing, bend, displacement) {
                 break Some(End::Blocked);
             }
             // One fewer next time, or two, if that would have done: an iteration moves the end by what

@@ -74,22 +74,27 @@ pub fn solve<S: Simd, L: LocalEquation>(
     }
 }
 
-/// Whether a step stays between these positions: between two nodes the motion may go a
-/// little beyond both.
+/// (Δu)²/8 of the two nodes in the middle, the farthest from each other, and a third more, since f may be
+/// larger between the nodes: x goes beyond both by this part of half²·|f| at most.
+const BETWEEN_NODES: f64 = 0.0224;
+
+/// Whether a step stays between these positions that moves by `moved` in all and by `swing` at the nodes,
+/// and where half²·|f| is no more than `bend`.
 #[inline(always)]
 pub fn stays_between<S: Simd>(
     (lowest, highest): (f64, f64),
     position: f64,
     moved: f64,
     swing: f64,
+    bend: f64,
     [low, high]: Pair<S>,
 ) -> bool {
-    let far = 1.5 * swing.max(moved.abs());
+    let beyond = BETWEEN_NODES * bend;
+    let far = swing.max(moved.abs()) + beyond;
     if position - far > lowest && position + far < highest {
         return true;
     }
     let up = Lanes::<S, 4>::max(low, high).largest().max(moved).max(0.0);
     let down = Lanes::<S, 4>::min(low, high).smallest().min(moved).min(0.0);
-    let beyond = 0.25 * (up - down);
     position + down - beyond > lowest && position + up + beyond < highest
 }

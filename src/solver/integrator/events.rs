@@ -77,7 +77,9 @@ impl<M: Method> Integrator<M> {
                 step.segment.expand();
                 let from = self.recorded_until.since(step.begin).max(0.0);
                 let to = target.since(step.begin).min(step.segment.length());
-                for turn in step.segment.turns(from, to) {
+                let known =
+                    step.origin.relative(extremes.lowest)..=step.origin.relative(extremes.highest);
+                for turn in step.segment.turns_outside(known, from, to) {
                     extremes.include(step.origin.absolute(turn));
                 }
             }

@@ -312,7 +312,7 @@ impl Trajectory {
         let step = self.step(&local, state, [repeats, only_end], most)?;
         // Steps are kept only while an orbit may still come out of them.
         let shift = self.push((), Segment::new(state, step.end, &step.series), repeats);
-        let (lowest, highest) = step.reach().into_inner();
+        let (lowest, highest) = step.reach(state.position).into_inner();
         let stop = self.first_contact(lowest, highest);
         self.stop_in_last_step(stop);
         if repeats {

@@ -26,7 +26,9 @@ impl Trajectory {
             .map_err(|length| Failure::SubstepTooShort { length, after: 0.0 })?;
         let mut segment = Segment::new(state, substep.end, &substep.series);
         segment.expand();
-        let contact = self.limits.first_contact(&mut segment, substep.reach());
+        let contact = self
+            .limits
+            .first_contact(&mut segment, substep.reach(state.position));
         let (progress, passed, end) = match contact {
             None => (Progress::Whole, segment.length(), segment.end()),
             Some((limit, after)) => (
