@@ -156,21 +156,10 @@ impl<N: Number> ensemble::Packed<N> for Packed<N> {
         motion::acceleration(&self.coefficients, load, position, rate)
     }
 
-    /// (5λ⁻⁶ + a1 + 3(|a3| + φ²)λ² + 5a5 λ⁴)/(c + 2λ⁻⁶): with the absolute values of the terms.
     #[inline(always)]
     fn stiffness(&self, position: N) -> N {
-        let number = |value: f64| position.same(value);
-        let Coefficients {
-            inertia,
-            linear,
-            cubic,
-            quintic,
-        } = self.coefficients;
         let largest = self.voltage.magnitude() + self.amplitude.magnitude();
-        let square = position * position;
-        let sixth = square * square * square;
-        let lower = number(3.0) * (cubic.magnitude() + largest * largest);
-        let bracket = linear.magnitude() + square * (lower + square * number(5.0) * quintic);
-        (number(5.0) + sixth * bracket) / (inertia * sixth + number(2.0))
+        let [stiffness, mass] = motion::stiffness_and_mass(&self.coefficients, largest, position);
+        stiffness / mass
     }
 }

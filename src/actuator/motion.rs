@@ -196,26 +196,34 @@ impl LocalEquation for LocalMotion<'_> {
 }
 
 impl LocalMotion<'_> {
-    /// Both sides of |∂λ''/∂λ| = stiffness/M, times λ⁶. The absolute values of the terms of the
-    /// stiffness are added up, since their sum may vanish.
     #[inline(always)]
     fn stiffness_and_mass(&self, stretch: f64) -> [f64; 2] {
-        let Coefficients {
-            inertia,
-            linear,
-            cubic,
-            quintic,
-        } = self.coefficients;
-        let voltage = self.drive.largest_voltage();
-        let square = stretch * stretch;
-        let cube = square * stretch;
-        let sixth = cube * cube;
-        let stiffness = 5.0
-            + sixth
-                * (linear.abs()
-                    + square * (3.0 * (cubic.abs() + voltage * voltage) + square * 5.0 * quintic));
-        [stiffness, inertia * sixth + 2.0]
+        stiffness_and_mass(&self.coefficients, self.drive.largest_voltage(), stretch)
     }
+}
+
+/// Numerator and denominator of |∂λ''/∂λ| = (5λ⁻⁶ + |a1| + 3(|a3| + φ²)λ² + 5a5 λ⁴)/(c + 2λ⁻⁶), times
+/// λ⁶, where φ is the largest voltage. The absolute values of the terms of the stiffness are added up,
+/// since their sum may vanish.
+#[inline(always)]
+pub fn stiffness_and_mass<N: Number>(
+    coefficients: &Coefficients<N>,
+    largest_voltage: N,
+    stretch: N,
+) -> [N; 2] {
+    let number = |value: f64| stretch.same(value);
+    let &Coefficients {
+        inertia,
+        linear,
+        cubic,
+        quintic,
+    } = coefficients;
+    let square = stretch * stretch;
+    let cube = square * stretch;
+    let sixth = cube * cube;
+    let by_square = number(3.0) * (cubic.magnitude() + largest_voltage * largest_voltage);
+    let bracket = linear.magnitude() + square * (by_square + square * number(5.0) * quintic);
+    [number(5.0) + sixth * bracket, inertia * sixth + number(2.0)]
 }
 
 /// √(a/b) of positive numbers, to 10 %. The bits of a number are its logarithm, linear

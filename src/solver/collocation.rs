@@ -19,9 +19,11 @@ use std::ops::RangeInclusive;
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
 use super::iteration::{Diverged, IterationTolerance};
-use super::tables::{Columns, PAIRED_16, PAIRS};
+use super::tables::product::product_in_lanes;
+use super::tables::{PAIRED_16, PAIRS};
 use super::{LocalEquation, State};
 use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
 
 /// The end of a step misses less than this part of the estimate: 16 to 26 000 times less on an AC motion near
@@ -118,23 +120,6 @@ pub struct Task<'a> {
     pub guess: Guess<'a>,
 }
 
-/// `Σ_j column[j] · value[j]`, in a fixed order.
-#[inline(always)]
-pub(super) fn product<S: Simd, V: Lanes<S, P>, const P: usize>(
-    simd: S,
-    columns: &Columns<P>,
-    values: &[f64; P],
-) -> V {
-    // Two chains, so that one multiplication need not wait for the other.
-    let mut even = V::load(simd, &columns[0]) * V::fill(simd, values[0]);
-    let mut odd = V::load(simd, &columns[1]) * V::fill(simd, values[1]);
-    for j in (2..P).step_by(2) {
-        even = V::load(simd, &columns[j]).mul_add(V::fill(simd, values[j]), even);
-        odd = V::load(simd, &columns[j + 1]).mul_add(V::fill(simd, values[j + 1]), odd);
-    }
-    even + odd
-}
-
 /// `Σ_j row[j] · value[j]`, in a fixed order.
 #[inline(always)]
 fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
@@ -222,10 +207,12 @@ fn solve<S: Simd, L: LocalEquation>(
         let differences = (f[0] - f[1]).store();
         let mean = dot(&tables.mean, &sums);
         let tilt = dot(&tables.tilt, &differences);
-        let once_odd: f64x8<S> = product(simd, &tables.once_from_sums, &sums);
-        let once_even: f64x8<S> = product(simd, &tables.once_from_differences, &differences);
-        let twice_even: f64x8<S> = product(simd, &tables.twice_from_sums, &sums);
-        let twice_odd: f64x8<S> = product(simd, &tables.twice_from_differences, &differences);
+        let once_odd: f64x8<S> = product_in_lanes(simd, &tables.once_from_sums, &sums);
+        let once_even: f64x8<S> =
+            product_in_lanes(simd, &tables.once_from_differences, &differences);
+        let twice_even: f64x8<S> = product_in_lanes(simd, &tables.twice_from_sums, &sums);
+        let twice_odd: f64x8<S> =
+            product_in_lanes(simd, &tables.twice_from_differences, &differences);
 
         let rate = once_even.mul_add(splat(half), splat(start.rate + half * mean));
         let rate_odd = once_odd * splat(half);
@@ -271,8 +258,9 @@ fn solve<S: Simd, L: LocalEquation>(
                 if !(end.position.is_finite() && end.rate.is_finite() && lowest.is_finite()) {
                     return Err(Diverged);
                 }
-                let even: f64x8<S> = product(simd, &tables.series_from_sums, &sums);
-                let odd: f64x8<S> = product(simd, &tables.series_from_differences, &differences);
+                let even: f64x8<S> = product_in_lanes(simd, &tables.series_from_sums, &sums);
+                let odd: f64x8<S> =
+                    product_in_lanes(simd, &tables.series_from_differences, &differences);
                 let series = Series {
                     half,
                     even: (even * splat(square)).store(),
@@ -307,20 +295,5 @@ fn continued<N: Number>(series: &Series, u: N) -> N {
         };
         u.same(half[degree / 2])
     };
-    clenshaw::<N, PAIRS>(u, coefficient) * u.same(size)
-}
-
-/// A Legendre series of degree 2P − 1 at u, by Clenshaw's summation.
-#[inline(always)]
-pub(super) fn clenshaw<N: Number, const P: usize>(u: N, coefficient: impl Fn(usize) -> N) -> N {
-    let number = |value: f64| u.same(value);
-    let (mut next, mut after) = (number(0.0), number(0.0));
-    for degree in (0..2 * P).rev() {
-        let k = degree as f64;
-        let rise = u * number((2.0 * k + 1.0) / (k + 1.0));
-        let fall = number(-(k + 1.0) / (k + 2.0));
-        let sum = rise.mul_add(next, after.mul_add(fall, coefficient(degree)));
-        (next, after) = (sum, next);
-    }
-    next
+    legendre::sum(u, 2 * PAIRS, coefficient) * u.same(size)
 }

@@ -3,14 +3,14 @@
 
 use std::ops::RangeInclusive;
 
-use nalgebra::{SMatrixView, SVector};
 use serde::{Deserialize, Serialize};
 
 use super::State;
 use super::collocation::Series;
 use super::position_origin::PositionOrigin;
+use super::tables::PAIRED_16;
 pub use super::tables::PAIRS;
-use super::tables::{Columns, PAIRED_16};
+use super::tables::product::product;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::roots::crossing;
 
@@ -224,11 +224,6 @@ impl Segment {
             Some(self.position(crossing(begin, end, |offset| self.rate(offset))))
         })
     }
-}
-
-/// The product of a table with the values at the nodes.
-pub(super) fn product<const N: usize>(columns: &Columns<N>, values: &[f64; N]) -> SVector<f64, N> {
-    SMatrixView::<f64, N, N>::from_slice(columns.as_flattened()) * SVector::from(*values)
 }
 
 /// Steps kept to find an orbit; an orbit near a saddle takes about 20.

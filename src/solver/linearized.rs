@@ -11,8 +11,9 @@ use nalgebra::{Const, LU, SMatrix, SVector};
 
 use super::State;
 use super::collocation::Series;
-use super::dense_output::{PAIRS, Segment, product};
+use super::dense_output::{PAIRS, Segment};
 use super::tables::GAUSS_16;
+use super::tables::product::product;
 
 /// Number of stages.
 pub const NODES: usize = 2 * PAIRS;

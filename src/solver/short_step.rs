@@ -10,8 +10,8 @@
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::collocation::product;
 use super::step_control::{StepControl, UNSEEN};
+use super::tables::product::product_in_lanes;
 use super::tables::{ENDS_4, GAUSS_4};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
@@ -225,7 +225,7 @@ fn solve<S: Simd, L: LocalEquation>(
     let mut rate = gain + fill(start.rate);
 
     let mut f = local.acceleration(load, position, rate).store();
-    let mut twice: f64x4<S> = product(simd, &GAUSS_4.twice, &f);
+    let mut twice: f64x4<S> = product_in_lanes(simd, &GAUSS_4.twice, &f);
     // Of what f adds, since in a short step the position would round it away.
     let mut new = twice * fill(square);
     let mut change = Lanes::<S, 4>::abs(new - bent).largest();
@@ -249,7 +249,7 @@ fn solve<S: Simd, L: LocalEquation>(
         let mut iterations = 1;
         loop {
             iterations += 1;
-            let once: f64x4<S> = product(simd, &GAUSS_4.once, &f);
+            let once: f64x4<S> = product_in_lanes(simd, &GAUSS_4.once, &f);
             // Not from `bent`, for which it would have to wait.
             position = twice.mul_add(fill(square), line);
             rate = once.mul_add(fill(half), fill(start.rate));
@@ -259,7 +259,7 @@ fn solve<S: Simd, L: LocalEquation>(
                 break;
             }
             bent = new;
-            twice = product(simd, &GAUSS_4.twice, &f);
+            twice = product_in_lanes(simd, &GAUSS_4.twice, &f);
             new = twice * fill(square);
             let last_change = change;
             change = Lanes::<S, 4>::abs(new - bent).largest();
@@ -275,12 +275,12 @@ fn solve<S: Simd, L: LocalEquation>(
     let sine = if local.load_frequency() == 0.0 {
         0.0
     } else {
-        let ends: f64x4<S> = product(simd, &ENDS_4, &sine.store());
+        let ends: f64x4<S> = product_in_lanes(simd, &ENDS_4, &sine.store());
         let [_, _, end, _] = Lanes::<S, 4>::store(ends);
         end
     };
-    let series: f64x4<S> = product(simd, &GAUSS_4.series, &f);
-    let added: f64x4<S> = product(simd, &ENDS_4, &f);
+    let series: f64x4<S> = product_in_lanes(simd, &GAUSS_4.series, &f);
+    let added: f64x4<S> = product_in_lanes(simd, &ENDS_4, &f);
     let weight: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
     let drift: f64x4<S> = Lanes::load(simd, &[length * start.rate, 0.0, 0.0, 0.0]);
     let from: f64x4<S> = Lanes::load(simd, &[start.position, start.rate, 0.0, 0.0]);

@@ -189,21 +189,24 @@ impl StepControl {
 /// # Errors
 /// By which factor to shorten it.
 pub fn judge(ratio: f64, order: f64, effort: f64) -> Result<f64, f64> {
-    if ratio <= 1.0 {
-        Ok(factor(ratio, order).min(effort.sqrt()).clamp(0.2, 3.0))
-    } else {
-        Err(shortened(ratio, order))
-    }
+    accept(ratio, order)?;
+    Ok(factor(ratio, order).min(effort.sqrt()).clamp(0.2, 3.0))
 }
 
-/// By which factor to shorten a step whose error, of this `order`, is by `ratio` larger than
-/// allowed, or NaN.
+/// Accepts a step whose error, of this `order`, is by `ratio` larger than allowed, if that is no more
+/// than 1.
+///
+/// # Errors
+/// By which factor to shorten it.
 #[inline(always)]
-pub fn shortened(ratio: f64, order: f64) -> f64 {
-    if ratio.is_nan() {
-        return HALVED;
+pub fn accept(ratio: f64, order: f64) -> Result<(), f64> {
+    if ratio <= 1.0 {
+        Ok(())
+    } else if ratio.is_nan() {
+        Err(HALVED)
+    } else {
+        Err(factor(ratio, order).max(0.2))
     }
-    factor(ratio, order).max(0.2)
 }
 
 /// By which factor a step may be longer whose error, of this `order`, is by `ratio` larger than

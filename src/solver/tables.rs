@@ -27,6 +27,7 @@
 use crate::arithmetic::double_double::DoubleDouble;
 
 mod paired;
+pub mod product;
 
 pub use paired::{PAIRED_16, PAIRS};
 

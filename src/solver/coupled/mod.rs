@@ -14,8 +14,8 @@
 //! stages are known.
 
 mod newton;
+mod nodes;
 mod polynomials;
-mod row;
 mod stage_values;
 pub mod stages;
 pub mod trajectory;

@@ -13,7 +13,7 @@
 
 use fearless_simd::Simd;
 
-use super::row::Row;
+use super::nodes::Nodes;
 use super::{LocalCoupledEquation, MOST_STATES, Sizes, Stage};
 use crate::arithmetic::number::Number;
 use crate::solver::iteration::Diverged;
@@ -35,7 +35,7 @@ pub(super) struct Whole<S: Simd, const R: usize, const N: usize> {
     /// S⁻¹.
     pub motion: Columns<N>,
     /// ∂z_k'/∂x.
-    pub response: [Row<S, R>; MOST_STATES],
+    pub response: [Nodes<S, R>; MOST_STATES],
 }
 
 impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
@@ -58,8 +58,8 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         &mut self,
         simd: S,
         step: (&Rule<N>, f64),
-        equation: (&L, L::Load<Row<S, R>>, usize),
-        at: &Stage<Row<S, R>>,
+        equation: (&L, L::Load<Nodes<S, R>>, usize),
+        at: &Stage<Nodes<S, R>>,
         sizes: &Sizes,
         whole: bool,
     ) -> Result<(), Diverged> {
@@ -78,19 +78,19 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         &mut self,
         simd: S,
         (rule, half): (&Rule<N>, f64),
-        (local, load, states): (&L, L::Load<Row<S, R>>, usize),
-        at: &Stage<Row<S, R>>,
+        (local, load, states): (&L, L::Load<Nodes<S, R>>, usize),
+        at: &Stage<Nodes<S, R>>,
         sizes: &Sizes,
         whole: bool,
     ) -> Result<(), Diverged> {
-        let fill = |value: f64| Row::<S, R>::fill(simd, value);
+        let fill = |value: f64| Nodes::<S, R>::fill(simd, value);
         let here = local.slopes(load, at);
         for k in 0..states {
             let relaxation = here[k].relaxation * fill(half);
             let inverse = &mut self.internal[k];
             for j in 0..N {
-                let once = Row::load(simd, &rule.once[j]);
-                inverse[j] = relaxation.mul_add(once, Row::unit(simd, j)).store();
+                let once = Nodes::load(simd, &rule.once[j]);
+                inverse[j] = relaxation.mul_add(once, Nodes::unit(simd, j)).store();
             }
             invert::<S, R, N>(simd, inverse)?;
         }
@@ -109,8 +109,8 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         let damping = force.relaxation * fill(half);
         let mut motion = [[0.0; N]; N];
         for j in 0..N {
-            let [once, twice] = [&rule.once[j], &rule.twice[j]].map(|row| Row::load(simd, row));
-            let both = stiffness.mul_add(twice, Row::unit(simd, j));
+            let [once, twice] = [&rule.once[j], &rule.twice[j]].map(|row| Nodes::load(simd, row));
+            let both = stiffness.mul_add(twice, Nodes::unit(simd, j));
             motion[j] = damping.mul_add(once, both).store();
         }
         let mut response = [fill(0.0); MOST_STATES];
@@ -122,9 +122,9 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
             let push = local.acceleration(load, &moved).value - force.value;
             let push = push * fill(per_more * half * half * half);
             for j in 0..N {
-                let answer = (response[k] * Row::load(simd, &rule.twice[j])).store();
-                let slopes = Row::<S, R>::product(simd, &self.internal[k], &answer).store();
-                let back: [f64; N] = (push * Row::product(simd, &rule.once, &slopes)).store();
+                let answer = (response[k] * Nodes::load(simd, &rule.twice[j])).store();
+                let slopes = Nodes::<S, R>::product(simd, &self.internal[k], &answer).store();
+                let back: [f64; N] = (push * Nodes::product(simd, &rule.once, &slopes)).store();
                 for i in 0..N {
                     motion[j][i] -= back[i];
                 }
@@ -152,20 +152,20 @@ fn invert<S: Simd, const R: usize, const N: usize>(
     simd: S,
     columns: &mut Columns<N>,
 ) -> Result<(), Diverged> {
-    let fill = |value: f64| Row::<S, R>::fill(simd, value);
+    let fill = |value: f64| Nodes::<S, R>::fill(simd, value);
     for p in 0..N {
         let pivot = columns[p][p];
         if pivot == 0.0 || !pivot.is_finite() {
             return Err(Diverged);
         }
-        let unit = Row::<S, R>::unit(simd, p);
-        let column = unit.mul_add(fill(1.0 - pivot), Row::load(simd, &columns[p]));
+        let unit = Nodes::<S, R>::unit(simd, p);
+        let column = unit.mul_add(fill(1.0 - pivot), Nodes::load(simd, &columns[p]));
         let column = column * fill(1.0 / pivot);
         // Takes the place of the pivot's row along.
         let taken = column + unit;
         for other in columns.iter_mut() {
             let factor = fill(-other[p]);
-            *other = taken.mul_add(factor, Row::load(simd, other)).store();
+            *other = taken.mul_add(factor, Nodes::load(simd, other)).store();
         }
         columns[p] = column.store();
     }

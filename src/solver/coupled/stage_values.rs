@@ -2,21 +2,21 @@
 
 use fearless_simd::Simd;
 
+use super::nodes::Nodes;
 use super::polynomials::{Coefficients, TERMS};
-use super::row::Row;
+use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
-use crate::solver::collocation::clenshaw;
 use crate::solver::tables::{Columns, Rule};
 
-/// Pairs of Legendre coefficients by which the slopes of the step before are continued: those of
+/// Legendre coefficients by which the slopes of the step before are continued: those of
 /// high degree grow too fast outside their step.
-const CONTINUED_PAIRS: usize = 4;
+const CONTINUED: usize = 8;
 
 /// One state over the step: its slopes at the nodes and what they add to it.
 #[derive(Clone, Copy)]
 pub(super) struct StageValues<S: Simd, const R: usize, const N: usize> {
     pub slopes: [f64; N],
-    pub gain: Row<S, R>,
+    pub gain: Nodes<S, R>,
 }
 
 impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
@@ -25,7 +25,7 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
     pub fn constant(simd: S) -> Self {
         StageValues {
             slopes: [0.0; N],
-            gain: Row::fill(simd, 0.0),
+            gain: Nodes::fill(simd, 0.0),
         }
     }
 
@@ -38,10 +38,10 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
         before: f64,
         series: &Coefficients,
     ) -> Self {
-        let fill = |value: f64| Row::fill(simd, value);
-        let place: Row<S, R> = Row::load(simd, &rule.place);
+        let fill = |value: f64| Nodes::fill(simd, value);
+        let place: Nodes<S, R> = Nodes::load(simd, &rule.place);
         let u = place.mul_add(fill(half / before), fill(1.0));
-        let slopes = clenshaw::<Row<S, R>, CONTINUED_PAIRS>(u, |degree| fill(series[degree]));
+        let slopes = legendre::sum(u, CONTINUED, |degree| fill(series[degree]));
         let mut values = StageValues::constant(simd);
         values.take(simd, rule, half, slopes);
         values
@@ -51,22 +51,22 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
     #[inline(always)]
     pub fn going(simd: S, rule: &Rule<N>, half: f64, slope: f64) -> Self {
         let mut values = StageValues::constant(simd);
-        values.take(simd, rule, half, Row::fill(simd, slope));
+        values.take(simd, rule, half, Nodes::fill(simd, slope));
         values
     }
 
     /// The slopes, corrected by what they lack of `new` ones times the inverse of a matrix.
     #[inline(always)]
-    pub fn corrected(&self, simd: S, inverse: &Columns<N>, new: Row<S, R>) -> Row<S, R> {
-        let old = Row::load(simd, &self.slopes);
-        old + Row::product(simd, inverse, &(new - old).store())
+    pub fn corrected(&self, simd: S, inverse: &Columns<N>, new: Nodes<S, R>) -> Nodes<S, R> {
+        let old = Nodes::load(simd, &self.slopes);
+        old + Nodes::product(simd, inverse, &(new - old).store())
     }
 
     /// Takes new slopes, and returns by how much the state has changed.
     #[inline(always)]
-    pub fn take(&mut self, simd: S, rule: &Rule<N>, half: f64, slopes: Row<S, R>) -> f64 {
+    pub fn take(&mut self, simd: S, rule: &Rule<N>, half: f64, slopes: Nodes<S, R>) -> f64 {
         self.slopes = slopes.store();
-        let gain = Row::product(simd, &rule.once, &self.slopes) * Row::fill(simd, half);
+        let gain = Nodes::product(simd, &rule.once, &self.slopes) * Nodes::fill(simd, half);
         let change = (gain - self.gain).largest();
         self.gain = gain;
         change

@@ -14,8 +14,8 @@
 use fearless_simd::{Level, Simd, dispatch};
 
 use super::newton::Newton;
+use super::nodes::Nodes;
 use super::polynomials::{Coefficients, TERMS};
-use super::row::Row;
 use super::stage_values::{StageValues, series};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
@@ -197,8 +197,8 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         before,
     } = task;
     let half = 0.5 * length;
-    let fill = |value: f64| Row::<S, R>::fill(simd, value);
-    let place: Row<S, R> = Row::load(simd, &rule.place);
+    let fill = |value: f64| Nodes::<S, R>::fill(simd, value);
+    let place: Nodes<S, R> = Nodes::load(simd, &rule.place);
     let load = local.load(place * fill(half));
     let State { position, rate } = start.motion;
     let drift = place * fill(half * rate);
@@ -227,7 +227,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             None => StageValues::going(simd, rule, half, first.value),
         };
     }
-    let mut bent = Row::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
+    let mut bent = Nodes::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
     // A guess that leads far away may look like a solution: what Newton's method makes of it hardly moves.
     let is_near = bent.largest() <= FARTHEST_GUESS * sizes.position;
     if !is_near {
@@ -277,7 +277,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             new = motion.corrected(simd, &whole.motion, new);
         }
         change = later(change, motion.take(simd, rule, half, new) / sizes.rate);
-        let new = Row::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
+        let new = Nodes::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
         let moved = new - bent;
         change = later(change, moved.largest() / sizes.position);
         bent = new;
@@ -286,8 +286,8 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         if let (Some(newton), Some(whole)) = (&newton, whole) {
             for k in 0..states {
                 let answer = (whole.response[k] * moved).store();
-                let more = Row::product(simd, &newton.internal[k], &answer);
-                let slopes = Row::load(simd, &internal[k].slopes) + more;
+                let more = Nodes::product(simd, &newton.internal[k], &answer);
+                let slopes = Nodes::load(simd, &internal[k].slopes) + more;
                 let moved = internal[k].take(simd, rule, half, slopes);
                 change = later(change, moved / sizes.internal[k]);
                 at.internal[k] = fill(start.internal[k]) + internal[k].gain;
@@ -315,7 +315,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
 
     let positions: [f64; N] = at.position.store();
     let rates: [f64; N] = at.rate.store();
-    let insides: [[f64; N]; MOST_STATES] = at.internal.map(Row::store);
+    let insides: [[f64; N]; MOST_STATES] = at.internal.map(Nodes::store);
     let mut powers = [[0.0; N]; MOST_INTEGRALS];
     for i in 0..N {
         let stage = Stage {

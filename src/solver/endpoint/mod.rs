@@ -12,7 +12,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
-use super::step_control::{HALVED, SHORTEST, StepControl, shortened};
+use super::step_control::{HALVED, SHORTEST, StepControl, accept};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
@@ -263,11 +263,8 @@ impl EndpointSteps {
                 let size = parts[0].max(parts[1]);
                 let allowed = NEGLECTED_WITH_PLAN * end_tolerance * scale;
                 let error = tail * tail / (size * allowed).max(f64::MIN_POSITIVE);
-                if error <= 1.0 {
-                    Ok((stages, [moved, gained, swing, parts[0] + parts[1]], error))
-                } else {
-                    Err(shortened(error, ORDER))
-                }
+                accept(error, ORDER)?;
+                Ok((stages, [moved, gained, swing, parts[0] + parts[1]], error))
             });
             let (stages, [moved, gained, swing, bend], error) = match attempt {
                 Ok(solved) => solved,

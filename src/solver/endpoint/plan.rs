@@ -22,8 +22,8 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use super::matrix::{diagonals, quotient, rows, sum};
 use super::table::{Dense, Diagonals, Matrices, TABLE};
 use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
-use crate::solver::collocation::clenshaw;
 
 /// Nodes of a step.
 pub const NODES: usize = 8;
@@ -253,7 +253,7 @@ impl Plan {
         let mut values = pair(simd, &self.offset);
         for k in 0..2 {
             let u = values[k].mul_add(inverse, one);
-            values[k] = clenshaw::<_, { NODES / 2 }>(u, |degree| u.same(series[degree]));
+            values[k] = legendre::sum(u, NODES, |degree| u.same(series[degree]));
         }
         values
     }

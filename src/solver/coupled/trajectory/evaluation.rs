@@ -1,7 +1,8 @@
 //! First-order states, integrals and slopes at the present time.
 
 use super::{Carried, MOST_WORK, Trajectory};
-use crate::solver::coupled::polynomials::{Coefficients, Polynomials, sum};
+use crate::arithmetic::legendre;
+use crate::solver::coupled::polynomials::{Coefficients, Polynomials};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
 use crate::solver::integrator::{Method, Present};
@@ -53,7 +54,9 @@ impl Trajectory {
         let step = &self.history.steps()[self.index];
         let series = step.segment.series();
         let u = self.now.since(step.begin) / series.half - 1.0;
-        let acceleration = sum(&by_degree(&step.segment), u) / (series.half * series.half);
+        let terms = by_degree(&step.segment);
+        let sum = legendre::sum(u, terms.len(), |k| terms[k]);
+        let acceleration = sum / (series.half * series.half);
         (acceleration, self.slopes().unwrap_or_default())
     }
 }

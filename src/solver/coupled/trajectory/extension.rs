@@ -44,8 +44,8 @@ const MUCH_LONGER: f64 = 3.0;
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
 
-/// What ends a step: its equation and how it is to be solved.
-struct Method {
+/// What is asked of a step.
+struct Demands {
     states: usize,
     integrals: usize,
     few: bool,
@@ -87,7 +87,7 @@ impl Trajectory {
             self.mode = Mode::AtRest;
             return Ok(DoubleDouble::ZERO);
         }
-        let method = Method {
+        let demands = Demands {
             states,
             integrals,
             few: self.restarts_at_every_step,
@@ -102,7 +102,7 @@ impl Trajectory {
         } else {
             f64::INFINITY
         };
-        let step = self.step(&local, &start, origin, &method, most, work)?;
+        let step = self.step(&local, &start, origin, &demands, most, work)?;
         let segment = Segment::new(start.motion, step.end.motion, &motion_series(&step));
         // The steps are kept while they may still make an orbit.
         let shift = self.push(origin, segment, repeats);
@@ -130,7 +130,7 @@ impl Trajectory {
         local: &L,
         start: &FullState,
         origin: DoubleDouble,
-        method: &Method,
+        demands: &Demands,
         most: f64,
         work: &mut u32,
     ) -> Result<Step, f64> {
@@ -143,20 +143,24 @@ impl Trajectory {
         let load = local.load(0.0);
         let slopes = local.slopes(load, &stage);
         let damping = local.acceleration(load, &stage).relaxation;
-        let relaxation =
-            { slopes[..method.states].iter().map(|slope| slope.relaxation) }.fold(0.0, f64::max);
+        let relaxation = {
+            slopes[..demands.states]
+                .iter()
+                .map(|slope| slope.relaxation)
+        }
+        .fold(0.0, f64::max);
         let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
-            free = free.min(self.transient(local, start, &sizes, method));
+            free = free.min(self.transient(local, start, &sizes, demands));
         }
         // Two periods of the load, or it would be mistaken for a slow one.
-        let nodes = if method.few { 0.5 } else { 1.0 };
+        let nodes = if demands.few { 0.5 } else { 1.0 };
         let seen = nodes * 4.0 * std::f64::consts::PI / local.load_frequency();
         let most = most.min(seen);
         let shortest = (SHORTEST_TRANSIENT * scale).min(0.5 * most);
         let before = self.slopes_of_last_step(fresh);
-        let control = method.control;
+        let control = demands.control;
         let Accepted {
             step,
             length,
@@ -166,8 +170,8 @@ impl Trajectory {
             let task = Task {
                 start,
                 length,
-                states: method.states,
-                integrals: method.integrals,
+                states: demands.states,
+                integrals: demands.integrals,
                 sizes: &sizes,
                 tolerance: IterationTolerance::new(control.end_tolerance_within(part), ROUNDED),
                 before: before
@@ -183,7 +187,7 @@ impl Trajectory {
                 Iteration::FixedPoint
             };
             let mut solve = |iteration| {
-                let way = (iteration, method.few);
+                let way = (iteration, demands.few);
                 stages::solve(self.level, local, &task, way, work)
             };
             let solved = match solve(iteration) {
@@ -197,7 +201,7 @@ impl Trajectory {
                 return Err(HALVED);
             }
             let tolerance = control.tolerance.max(ERROR_NOISE);
-            let part = if method.integrals > 0 {
+            let part = if demands.integrals > 0 {
                 (sizes.swing / sizes.position).max(ERROR_NOISE / tolerance)
             } else {
                 1.0
@@ -209,7 +213,7 @@ impl Trajectory {
                 internal: sizes.internal.map(|size| part * size),
                 ..sizes
             };
-            let ratio = step.error(&here, method.integrals) / tolerance;
+            let ratio = step.error(&here, demands.integrals) / tolerance;
             let order = (step.nodes + 1) as f64;
             // Where the error allows much longer steps, Newton's method takes them.
             let effort = if ratio < MUCH_LONGER.powf(-order) {
@@ -241,7 +245,7 @@ impl Trajectory {
         local: &L,
         start: &FullState,
         sizes: &Sizes,
-        method: &Method,
+        demands: &Demands,
     ) -> f64 {
         let stage = start.stage();
         let load = local.load(0.0);
@@ -249,13 +253,13 @@ impl Trajectory {
         let mut longest = f64::INFINITY;
         let mut limit = |slope: Slope, before: f64, size: f64| {
             let excursion = (slope.value - before).abs() / slope.relaxation;
-            if excursion > method.control.tolerance * size {
+            if excursion > demands.control.tolerance * size {
                 longest = longest.min(FIRST_RELAXATION / slope.relaxation);
             }
         };
         limit(local.acceleration(load, &stage), before, sizes.rate);
         let slopes = local.slopes(load, &stage);
-        for k in 0..method.states {
+        for k in 0..demands.states {
             limit(slopes[k], before_internal[k], sizes.internal[k]);
         }
         longest

@@ -30,31 +30,31 @@ const UNIT_NODES: usize = 16;
 
 /// A number for each of 8 R nodes, in R registers.
 #[derive(Clone, Copy)]
-pub(super) struct Row<S: Simd, const R: usize>([f64x8<S>; R]);
+pub(super) struct Nodes<S: Simd, const R: usize>([f64x8<S>; R]);
 
-impl<S: Simd, const R: usize> Row<S, R> {
+impl<S: Simd, const R: usize> Nodes<S, R> {
     /// The same number at all nodes.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn fill(simd: S, value: f64) -> Self {
-        Row([f64x8::fill(simd, value); R])
+        Nodes([f64x8::fill(simd, value); R])
     }
 
     /// 1 at this node, 0 at the others.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn unit(simd: S, node: usize) -> Self {
-        Row::load::<UNIT_NODES>(simd, &UNITS[node])
+        Nodes::load::<UNIT_NODES>(simd, &UNITS[node])
     }
 
     /// These numbers.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn load<const N: usize>(simd: S, values: &[f64; N]) -> Self {
-        let mut row = Row::fill(simd, 0.0);
+        let mut nodes = Nodes::fill(simd, 0.0);
         for r in 0..R {
             let mut part = [0.0; LANES];
             part.copy_from_slice(&values[LANES * r..LANES * (r + 1)]);
-            row.0[r] = f64x8::load(simd, &part);
+            nodes.0[r] = f64x8::load(simd, &part);
         }
-        row
+        nodes
     }
 
     /// The numbers.
@@ -70,10 +70,10 @@ impl<S: Simd, const R: usize> Row<S, R> {
     /// `Σ_j column[j] · value[j]`, in a fixed order.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn product<const N: usize>(simd: S, columns: &Columns<N>, values: &[f64; N]) -> Self {
-        let mut sums = [Row::fill(simd, 0.0); 2];
+        let mut sums = [Nodes::fill(simd, 0.0); 2];
         for j in 0..N {
-            let column: Self = Row::load(simd, &columns[j]);
-            sums[j % 2] = column.mul_add(Row::fill(simd, values[j]), sums[j % 2]);
+            let column: Self = Nodes::load(simd, &columns[j]);
+            sums[j % 2] = column.mul_add(Nodes::fill(simd, values[j]), sums[j % 2]);
         }
         sums[0] + sums[1]
     }
@@ -100,7 +100,7 @@ impl<S: Simd, const R: usize> Row<S, R> {
 
 macro_rules! operators {
     ($($operator:ident $name:ident),*) => {$(
-        impl<S: Simd, const R: usize> $operator for Row<S, R> {
+        impl<S: Simd, const R: usize> $operator for Nodes<S, R> {
             type Output = Self;
 
             #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
@@ -116,10 +116,10 @@ macro_rules! operators {
 
 operators!(Add add, Sub sub, Mul mul, Div div);
 
-impl<S: Simd, const R: usize> Number for Row<S, R> {
+impl<S: Simd, const R: usize> Number for Nodes<S, R> {
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     fn same(self, value: f64) -> Self {
-        Row([self.0[0].same(value); R])
+        Nodes([self.0[0].same(value); R])
     }
 
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
