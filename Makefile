@@ -332,6 +332,7 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) is no Python 3.11 or later; install one and run make PYTHON=...'; exit 1; }
 	@$(PYTHON) -m pip --version >/dev/null || \
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
+	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
 	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
 	@touch $@
