@@ -13,6 +13,7 @@ import argparse
 import tempfile
 from pathlib import Path
 
+import page
 import plots
 import ratios
 import records
@@ -35,7 +36,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--scipy-rounds", type=int, default=1)
     parser.add_argument("--van-der-pol", type=Path, help="shared library of the Reference FMU VanDerPol")
     parser.add_argument("--cases", default=",".join(case.name for case in ALL_CASES))
-    parser.add_argument("--records", type=Path, help="folder instead of benchmark/records")
+    parser.add_argument("--records", type=Path, help="folder instead of benchmark/records; docs/performance.md stays")
     parser.add_argument("--figures", type=Path, default=FIGURES)
     return parser.parse_args()
 
@@ -174,6 +175,10 @@ def main() -> None:
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")
+    whole = options.cases == ",".join(case.name for case in ALL_CASES) and rivals.heyoka is not None
+    if whole and options.records is None:
+        page.PAGE.write_text(page.renewed(page.PAGE.read_text(), target))
+        written.append(page.PAGE)
     print("\n" + text)
     for row in best_free + best_steps:
         if row["note"].startswith(("failed", "not timed")):

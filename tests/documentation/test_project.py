@@ -48,3 +48,10 @@ def test_every_crate_has_the_lints_of_the_workspace(path):
     lints = manifest(path)["lints"]
     # The benchmark and the fuzzer are workspaces of their own and cannot refer to this one.
     assert lints == {"workspace": True} or lints == wanted
+
+
+def test_the_tables_of_performance_are_those_of_the_newest_record(monkeypatch):
+    monkeypatch.syspath_prepend(str(REPOSITORY / "benchmark"))
+    from page import PAGE, newest_record, renewed
+
+    assert renewed(PAGE.read_text(), newest_record()) == PAGE.read_text()
