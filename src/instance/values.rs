@@ -229,8 +229,13 @@ impl<M: Model> Instance<M> {
         }
         let window = M::window(&self.scene);
         let begun = self.phase.has_begun();
+        let elsewhere = if begun {
+            self.check_tuned(references, &value)?
+        } else {
+            None
+        };
         self.bring_drive_up_to_date();
-        if begun && let Some(state) = self.check_tuned(references, &value)? {
+        if let Some(state) = elsewhere {
             self.jump_to(state);
         }
         for (place, &reference) in references.iter().enumerate() {

@@ -266,6 +266,35 @@ fn saved_instances_go_on_bit_for_bit() {
     }
 }
 
+/// Breakdown as a flag cuts a step of the motion in the middle of a communication step: what is saved
+/// at its end goes on, with and without a charge as a state, whether the motion had gone on before.
+#[test]
+fn an_instance_saved_after_breakdown_goes_on_bit_for_bit() {
+    for (resistance, before) in [(0.0, 0.0), (1e6, 0.0), (0.0, 3e-7), (1e6, 3e-7)] {
+        let settings = [
+            ("E_breakdown", 62e6),
+            ("lambda_max", 3.0),
+            ("R_s", resistance),
+        ];
+        let [mut host, mut other] = [Host::begun(&settings), Host::begun(&settings)];
+        if before > 0.0 {
+            host.step(before);
+        }
+        assert_eq!(host.get("broken_down"), 0.0);
+        host.step(1e-5);
+        assert_eq!(host.get("broken_down"), 1.0);
+        let bytes = host.instance.save(Vec::new()).expect("bytes");
+        other.instance.restore(&bytes).expect("a state");
+        other.time = host.time;
+        for host in [&mut host, &mut other] {
+            host.step(2e-6);
+            host.step(1e-8);
+        }
+        let [ours, theirs] = [&host, &other].map(|host| host.get("lambda").to_bits());
+        assert_eq!(ours, theirs);
+    }
+}
+
 /// Derivatives in time against differences along the motion.
 #[test]
 fn output_derivatives_are_those_of_the_motion() {

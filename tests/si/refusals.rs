@@ -179,6 +179,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
         }
         for (name, value) in [("J_m", 0.5), ("k1", -3.0)] {
             let before = host.get(name);
+            let saved = host.instance.save(Vec::new()).expect("bytes");
             let fault = host.set(name, value).expect_err(name);
             assert!(
                 fault.text.contains(&format!("{name} = {value}")),
@@ -186,6 +187,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
             );
             assert!(fault.text.contains("lambda = 1."), "{fault:?}");
             assert_eq!(host.get(name), before);
+            assert_eq!(host.instance.save(Vec::new()).expect("bytes"), saved);
         }
         if interface == Interface::CoSimulation {
             host.step(3e-7);

@@ -88,8 +88,9 @@ impl Trajectory {
             ..
         } = self.mode
         {
-            // The step is cut at the present; what follows is looked at anew.
+            // The step is cut at the present; what follows is looked at anew, in the same advance.
             self.restart();
+            self.advances = 1;
         }
     }
 
