@@ -339,6 +339,15 @@ impl LocalDrive<'_> {
         self.input(&self.drive.voltage, 0.0).abs() + self.drive.harmonic.amplitude.abs()
     }
 
+    /// What the absolute voltage is to be compared with: a polynomial that passes through zero is a sum of terms that
+    /// do not, and is no more accurate than they are.
+    pub fn voltage_size(&self) -> f64 {
+        let terms = Polynomial {
+            term: self.drive.voltage.term.map(f64::abs),
+        };
+        terms.at(self.shift.unwrap_or(0.0).abs()) + self.drive.harmonic.amplitude.abs()
+    }
+
     /// Angular frequency of the alternating voltage, 0 where there is none.
     #[must_use]
     #[inline(always)]

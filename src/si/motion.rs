@@ -94,6 +94,27 @@ impl SiMotion {
         }
     }
 
+    /// The present state in SI units in a scene that may have changed since: a charge that has become a state
+    /// is that on the electrodes.
+    #[must_use]
+    pub fn state_in(&self, scene: &SiScene, time: &DoubleDouble) -> SiState {
+        let mut state = self.state();
+        let is_new = self.stale && !self.motion.device.has_charge_state();
+        if is_new && scene.folded().device.has_charge_state() {
+            state.charge = self.charge_on_electrodes(time);
+        }
+        state
+    }
+
+    /// The charge on the electrodes in C.
+    fn charge_on_electrodes(&self, time: &DoubleDouble) -> f64 {
+        let charge = self.at_present(time, |local, stage| {
+            let load = local.load(0.0);
+            local.membrane_voltage(&load, stage) * local.capacitance(local.stretch(stage.position))
+        });
+        charge * self.scales.charge
+    }
+
     /// The derivative of the charge in A, from its polynomial, where it is a state that has moved.
     #[must_use]
     pub fn charging(&self) -> Option<f64> {
@@ -180,12 +201,8 @@ impl SiMotion {
             return;
         }
         let (motion, scales) = (scene.motion(), scene.scales());
-        let charge = self.at_present(time, |local, stage| {
-            let load = local.load(0.0);
-            local.membrane_voltage(&load, stage) * local.capacitance(local.stretch(stage.position))
-        });
         let state = SiState {
-            charge: charge * self.scales.charge,
+            charge: self.charge_on_electrodes(time),
             ..self.state()
         };
         let (exchanged, extremes) = (self.exchanged(), self.extremes());

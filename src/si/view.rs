@@ -31,7 +31,7 @@ impl View<'_, Si> {
     #[must_use]
     pub fn state(&self) -> SiState {
         let mut state = match self.place {
-            Place::On(motion) => motion.state(),
+            Place::On(motion) => motion.state_in(self.scene, self.time),
             Place::At { state, .. } => state,
         };
         self.hold(&mut state.motion);

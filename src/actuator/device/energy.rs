@@ -245,7 +245,7 @@ impl LocalDevice<'_> {
         let capacitance = self.capacitance(self.stretch(stage.position));
         let electric = match self.device.port.source {
             Source::Voltage => {
-                let voltage = self.drive.largest_voltage();
+                let voltage = self.drive.voltage_size();
                 0.5 * capacitance * voltage * voltage
             }
             _ => 0.5 * charge * charge / capacitance,

@@ -212,7 +212,7 @@ impl LocalCoupledEquation for LocalDevice<'_> {
         let mut internal = [1.0; MOST_STATES];
         let mut charge = 0.0;
         if self.device.has_charge_state() {
-            let source = self.drive.largest_voltage();
+            let source = self.drive.voltage_size();
             let driven = match self.device.port.source {
                 Source::Voltage => source * self.capacitance(self.stretch(stage.position)),
                 _ => source / frequency,
