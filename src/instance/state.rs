@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 12;
+pub const LAYOUT: u16 = 13;
 
 impl<M: Model> Instance<M> {
     /// The instance as bytes, in the memory of `buffer`.

@@ -11,6 +11,8 @@ use crate::arithmetic::number::Number;
 pub struct Before {
     /// By how much the position has moved.
     pub moved: f64,
+    /// x'' at its end.
+    pub acceleration: f64,
     /// g of its plan, and the displacement since its begin, at the nodes.
     pub g: [f64; NODES],
     pub displacement: [f64; NODES],
@@ -21,7 +23,7 @@ impl Before {
     pub fn is_valid(&self) -> bool {
         let numbers = self.g.iter().chain(&self.displacement);
         numbers
-            .chain([&self.moved])
+            .chain([&self.moved, &self.acceleration])
             .all(|number| number.is_finite())
     }
 

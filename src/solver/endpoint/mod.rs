@@ -84,6 +84,8 @@ pub struct EndpointSteps {
     half: f64,
     product: f64,
     before: Option<Before>,
+    /// The equation has changed since the last one: f jumps at its end.
+    restarted: bool,
     /// How often the stages are iterated before it is looked whether that was enough.
     iterations: u32,
     seen: Seen,
@@ -100,6 +102,7 @@ impl EndpointSteps {
             half: 0.0,
             product: 0.0,
             before: None,
+            restarted: false,
             iterations: FIRST_ITERATIONS,
             seen: Seen::BEGIN,
             slope: MeanSlope::UNKNOWN,
@@ -118,8 +121,9 @@ impl EndpointSteps {
     }
 
     /// The equation has changed: f does not go on where it was.
+    #[inline]
     pub fn restart(&mut self) {
-        self.before = None;
+        self.restarted = true;
     }
 
     /// Whether the numbers can be those of steps.
@@ -136,6 +140,7 @@ impl EndpointSteps {
     }
 
     /// Goes the way as far as it can.
+    #[inline(never)]
     pub fn go<E: Equation>(
         &mut self,
         level: Level,
@@ -210,13 +215,27 @@ impl EndpointSteps {
         plan.prepare(simd, half, product, frequency);
         let plan = &**plan;
         let slope = plan.slope;
-        let mut guess = match &self.before {
-            Some(before) => before.continued(simd, plan, self.half, last_slope),
-            None => {
+        let first = match &self.before {
+            Some(_) if !self.restarted => splat(0.0),
+            _ => {
                 let State { position, rate } = way.state;
-                [local.acceleration(load, splat(position), splat(rate)); 2]
+                local.acceleration(load, splat(position), splat(rate))
             }
         };
+        let mut guess = match &self.before {
+            Some(before) if !self.restarted || half == self.half => {
+                let [low, high] = before.continued(simd, plan, self.half, last_slope);
+                // Where f jumps, it goes on from there as it did.
+                let jump = if self.restarted {
+                    first - splat(before.acceleration)
+                } else {
+                    first
+                };
+                [low + jump, high + jump]
+            }
+            _ => [first; 2],
+        };
+        self.restarted = false;
         // Of the rate as of the position, in the motion's own units.
         let end_tolerance = (half / time_scale).min(1.0) * control.end_tolerance();
         let mut state = way.state;
@@ -329,16 +348,18 @@ impl EndpointSteps {
         self.iterations = self.iterations.min(MOST_ITERATIONS);
         way.now = way.now.add(DoubleDouble::new(length).scale(taken));
         if let Some((g, displacement, moved)) = last {
+            let acceleration = plan.last(simd, g) + slope * moved;
             if end == Some(End::Reached) {
                 // What rounding has left of the way.
                 let rest = way.target.since(way.now);
                 state.position += rest * state.rate;
-                state.rate += rest * (plan.last(simd, g) + slope * moved);
+                state.rate += rest * acceleration;
                 way.now = way.target;
             }
             (self.half, self.product) = (half, product);
             self.before = Some(Before {
                 moved,
+                acceleration,
                 g: unpair(g),
                 displacement: unpair(displacement),
             });
@@ -362,7 +383,9 @@ impl EndpointSteps {
         count: f64,
     ) -> f64 {
         let of_this_length = self.half == half;
-        if self.slope.is_unknown() || self.before.is_none() || !of_this_length {
+        // Where every step restarts, it is renewed when their length is looked at.
+        let due = self.restarted && self.seen.steps == 0;
+        if self.slope.is_unknown() || self.before.is_none() || !of_this_length || due {
             let positions = match &self.before {
                 Some(before) => shifted(
                     pair(simd, &before.displacement),

@@ -28,6 +28,9 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
+/// More endpoint-only steps are not made at once, since all are lost where a limit is met.
+const MOST_AT_ONCE: u32 = 8;
+
 /// After a short step that was refused, the next 14 of its length are not tried.
 const FORGOTTEN: f64 = 1.05;
 
@@ -146,14 +149,21 @@ impl Trajectory {
         clock: &mut DoubleDouble,
         step: f64,
     ) -> Result<Progress, Failure> {
-        let first = self.restarts_at_every_step && self.advances == 1;
-        if first && self.method.takes_endpoint_steps && self.takes_short_step(equation, clock, step)
-        {
-            *clock = clock.plus(step).renormalized();
-            return Ok(Progress::Whole);
-        }
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
+        let first = self.restarts_at_every_step && self.advances == 1;
+        if first && self.method.takes_endpoint_steps {
+            let mut there = self.takes_short_step(equation, clock, step);
+            if !there && self.history.is_empty() && self.takes_endpoint_steps(equation, step) {
+                let end = self.go_straight_to_end(equation, clock, step);
+                there = end == End::Reached;
+                unobstructed = end != End::Blocked;
+            }
+            if there {
+                *clock = clock.plus(step).renormalized();
+                return Ok(Progress::Whole);
+            }
+        }
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
             let (shift, free) = if unobstructed && motion.takes_endpoint_steps(equation, rest) {
@@ -208,18 +218,17 @@ impl Trajectory {
             self.method.trend = Trend::first(equation, time, self.start, step);
         }
         let bounds = self.bounds();
-        let Some(trend) = &mut self.method.trend else {
-            return false;
-        };
-        let mut short = ShortStep {
-            time,
-            length: step,
-            bounds,
-            control: self.control.repeated(),
-            state: &mut self.start,
-            trend,
-        };
-        let taken = short.take(self.level, equation);
+        let taken = self.method.trend.as_mut().is_some_and(|trend| {
+            let mut short = ShortStep {
+                time,
+                length: step,
+                bounds,
+                control: self.control.repeated(),
+                state: &mut self.start,
+                trend,
+            };
+            short.take(self.level, equation)
+        });
         if !taken {
             // So that a guess that leads nowhere is not made again.
             self.method.trend = None;
@@ -245,6 +254,33 @@ impl Trajectory {
             Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
             None => (lower, upper),
         }
+    }
+
+    /// Follows the motion from its start for the time `step`, which a few endpoint-only steps take, and
+    /// moves the start there. Where they do not reach it, they have not been made.
+    fn go_straight_to_end<E: Equation>(
+        &mut self,
+        equation: &E,
+        clock: &DoubleDouble,
+        step: f64,
+    ) -> End {
+        let mut way = Way {
+            begin: *clock,
+            now: DoubleDouble::ZERO,
+            state: self.start,
+            target: DoubleDouble::new(step),
+            bounds: self.bounds(),
+            budget: MOST_AT_ONCE,
+        };
+        let control = self.step_control(false);
+        let steps = &mut self.method.endpoint;
+        let end = steps.go(self.level, equation, control, &mut way);
+        if end == End::Reached {
+            self.start = way.state;
+        } else {
+            steps.restart();
+        }
+        end
     }
 
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
