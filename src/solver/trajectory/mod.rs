@@ -40,6 +40,10 @@ const FORGOTTEN: f64 = 1.05;
 /// leaves room for the rate, whose error is larger by the inverse of the motion's time scale.
 const NEGLECTED_BETWEEN_NODES: f64 = 1000.0;
 
+/// Coefficients larger than this part of the position are not the last ones of a series that falls: f is
+/// not resolved, however loose the tolerance.
+const RESOLVED: f64 = 0.1;
+
 /// What each kind of steps leaves for the next of its kind.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Steps {
@@ -403,7 +407,8 @@ impl Trajectory {
             } else {
                 // Of the position, or of the rate where that is worse.
                 let short = (4.0 * time_scale / length).max(1.0);
-                let missed = short * step.tail() / NEGLECTED_BETWEEN_NODES;
+                let neglected = NEGLECTED_BETWEEN_NODES.min(RESOLVED / control.tolerance);
+                let missed = short * step.tail() / neglected;
                 control.judge(missed / scale, step.contraction)?
             };
             Ok((step, factor))
