@@ -37,6 +37,7 @@ impl Drop for FloatEnvironment {
 #[cfg(target_arch = "x86_64")]
 mod register {
     use std::arch::asm;
+    use std::mem::MaybeUninit;
 
     pub type Words = u32;
 
@@ -51,13 +52,13 @@ mod register {
 
     #[inline(always)]
     pub fn read() -> Words {
-        let mut words: Words = 0;
+        let mut words = MaybeUninit::<Words>::uninit();
         // SAFETY: writes the register's 32 bits to a place of that size. Not marked as free of
         // other effects, so that no access to memory is moved across it.
         unsafe {
-            asm!("stmxcsr [{}]", in(reg) &raw mut words, options(nostack, preserves_flags));
+            asm!("stmxcsr [{}]", in(reg) words.as_mut_ptr(), options(nostack, preserves_flags));
+            words.assume_init()
         }
-        words
     }
 
     #[inline(always)]

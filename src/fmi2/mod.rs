@@ -328,9 +328,9 @@ pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     unsafe { get_real::<M>(c, vr, nvr, value) }
 }
 
-/// [`fmi2GetReal`] where something is to be worked out.
+/// [`fmi2GetReal`] where something is to be worked out. Of C, so that it is jumped to, not called.
 #[inline(never)]
-unsafe fn get_real<M: Model>(
+unsafe extern "C" fn get_real<M: Model>(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
     nvr: usize,

@@ -5,15 +5,10 @@ use fmi::fmi2::binding::*;
 use super::calls::Call;
 use super::envelope;
 use super::{Component, guarded, place, slice, slice_mut};
-use crate::instance::Fault;
+use crate::instance::{Fault, Saved};
 use crate::model::Model;
 
-/// What stands behind an `fmi2FMUstate`: a saved instance.
-struct Saved {
-    bytes: Vec<u8>,
-}
-
-/// The state behind the pointer.
+/// The saved instance behind the pointer.
 ///
 /// # Safety
 /// `state` must be null or come from [`fmi2GetFMUstate`] or
@@ -24,12 +19,12 @@ unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Fault> {
     unsafe { place(state.cast::<Saved>(), "the state") }
 }
 
-/// Hands `bytes` to the host, in the state that it has already or in a new one.
-fn hand_out(state: &mut fmi2FMUstate, bytes: Vec<u8>) {
+/// Hands a saved instance to the host, in the state that it has already or in a new one.
+fn hand_out(state: &mut fmi2FMUstate, new: Saved) {
     // SAFETY: the host holds null, or a state that we gave and that it has not freed.
     match unsafe { saved(*state) } {
-        Ok(old) => old.bytes = bytes,
-        Err(_) => *state = Box::into_raw(Box::new(Saved { bytes })).cast(),
+        Ok(old) => *old = new,
+        Err(_) => *state = Box::into_raw(Box::new(new)).cast(),
     }
 }
 
@@ -41,9 +36,9 @@ pub unsafe extern "C" fn fmi2GetFMUstate<M: Model>(
         // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         // SAFETY: the host holds null, or a state that we gave and that it has not freed.
-        let memory = unsafe { saved(*state) }.map(|old| std::mem::take(&mut old.bytes));
-        let bytes = component.instance.save(memory.unwrap_or_default())?;
-        hand_out(state, bytes);
+        let before = unsafe { saved(*state) }.map(std::mem::take);
+        let now = component.instance.save(before.unwrap_or_default())?;
+        hand_out(state, now);
         Ok(None)
     })
 }
@@ -55,7 +50,7 @@ pub unsafe extern "C" fn fmi2SetFMUstate<M: Model>(
     guarded::<M>(c, "fmi2SetFMUstate", Call::State, |component| {
         // SAFETY: the host passes null, or a state that we gave and that it has not freed.
         let state = unsafe { saved(FMUstate) }?;
-        component.instance.restore(&state.bytes)?;
+        component.instance.restore(state)?;
         Ok(None)
     })
 }
@@ -86,7 +81,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize<M: Model>(
         // SAFETY: the host passes null, or a state that we gave and that it has not freed.
         let state = unsafe { saved(FMUstate) }?;
         // SAFETY: the host points to a place for one value, or passes null.
-        *unsafe { place(size, "size") }? = envelope::size::<M>(&state.bytes);
+        *unsafe { place(size, "size") }? = envelope::size::<M>(state.bytes());
         Ok(None)
     })
 }
@@ -103,7 +98,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate<M: Model>(
         // SAFETY: the host's array has room for `size` bytes, or is null; `u8` is as wide as its
         // `char`.
         let target = unsafe { slice_mut(serializedState.cast::<u8>(), size, "serializedState") }?;
-        envelope::seal::<M>(&state.bytes, target)?;
+        envelope::seal::<M>(state.bytes(), target)?;
         Ok(None)
     })
 }
@@ -120,8 +115,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate<M: Model>(
         // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         let bytes = envelope::open::<M>(sealed)?;
-        component.instance.saved(bytes)?;
-        hand_out(state, bytes.to_vec());
+        hand_out(state, component.instance.saved(bytes)?);
         Ok(None)
     };
     guarded::<M>(c, "fmi2DeSerializeFMUstate", Call::State, body)

@@ -16,13 +16,13 @@ pub use exchange::{Exchange, Update};
 pub use fault::{Event, Fault, Severity};
 pub use phase::{Interface, Phase};
 pub use run::{Run, STEP_RANGE};
-pub use state::LAYOUT as STATE_LAYOUT;
+pub use state::{LAYOUT as STATE_LAYOUT, Saved};
 pub use values::Type;
 
 use serde::{Deserialize, Serialize};
 
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::model::Model;
+use crate::model::{Model, Place, View};
 use crate::shortest::Shortest;
 
 /// Relative tolerance of the stretch where the host defines none.
@@ -110,6 +110,41 @@ impl<M: Model> Instance<M> {
     #[inline]
     pub fn interface(&self) -> Interface {
         self.interface
+    }
+
+    /// What can be read at present.
+    #[must_use]
+    #[inline]
+    pub fn view(&self) -> View<'_, M> {
+        match &self.simulation {
+            Simulation::Run(run) => View {
+                scene: &self.scene,
+                place: Place::On(run.motion()),
+                time: run.time(),
+                collapse: run.collapse(),
+            },
+            _ => self.view_without_run(),
+        }
+    }
+
+    /// [`Instance::view`] of a state that is copied: out of the way of those that are not.
+    #[inline(never)]
+    fn view_without_run(&self) -> View<'_, M> {
+        let scene = &self.scene;
+        let (place, time, collapse) = match &self.simulation {
+            Simulation::Exchange(now) => (now.place(), &now.time, now.visible_collapse(scene)),
+            _ => {
+                // The drive counts from the start time.
+                let time = M::inputs_since(scene);
+                (Exchange::new(scene, *time).place(), time, None)
+            }
+        };
+        View {
+            scene,
+            place,
+            time,
+            collapse,
+        }
     }
 
     /// Sets start time, stop time and tolerance of the simulation. Returns an

@@ -3,7 +3,7 @@
 //! A saved instance is a row of bytes without pointers: everything that decides
 //! how the simulation goes on, down to the history of the integrator.
 //!
-//! Whatever the bytes, restoring them gives an error, or an instance that answers
+//! Whatever the bytes, reading them gives an error, or an instance that answers
 //! every call as any other does. Its numbers fit together: settings inside their
 //! limits, a phase that goes with how far the simulation is, and a motion whose steps join, with
 //! the present in one of them and between the limits of the stretch. That the
@@ -19,31 +19,63 @@ use crate::model::variables::Access;
 /// Grows with each change of what the bytes mean.
 pub const LAYOUT: u16 = 13;
 
+/// A saved instance, whose numbers fit together: it was saved by this process, or its bytes were
+/// checked.
+#[derive(Debug, Default, PartialEq)]
+pub struct Saved {
+    bytes: Vec<u8>,
+}
+
+impl Saved {
+    /// The instance as bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+}
+
 impl<M: Model> Instance<M> {
-    /// The instance as bytes, in the memory of `buffer`.
+    /// The instance as it is now, in the memory of one that was saved before.
     ///
     /// # Errors
     /// Error where the memory does not suffice.
-    pub fn save(&self, mut buffer: Vec<u8>) -> Result<Vec<u8>, Fault> {
-        buffer.clear();
-        postcard::to_extend(self, buffer)
-            .map_err(|error| Fault::error(format!("the state cannot be saved: {error}")))
+    pub fn save(&self, before: Saved) -> Result<Saved, Fault> {
+        let mut bytes = before.bytes;
+        bytes.clear();
+        match postcard::to_extend(self, bytes) {
+            Ok(bytes) => Ok(Saved { bytes }),
+            Err(error) => Err(Fault::error(format!("the state cannot be saved: {error}"))),
+        }
     }
 
-    /// The instance that was saved as these bytes.
+    /// The instance that was saved as these bytes, which may come from anywhere.
     ///
     /// # Errors
     /// Error where the bytes are none of [`Instance::save`], or an instance of
     /// another kind of FMU.
-    pub fn saved(&self, bytes: &[u8]) -> Result<Instance<M>, Fault> {
-        let damaged =
-            |why: &str| Fault::error(format!("the state is damaged ({why}); save it again"));
+    pub fn saved(&self, bytes: &[u8]) -> Result<Saved, Fault> {
+        let saved = self.read(bytes)?;
+        saved.check_validity().map_err(|why| damaged(&why))?;
+        let bytes = bytes.to_vec();
+        Ok(Saved { bytes })
+    }
+
+    /// Goes on from where an instance was saved.
+    ///
+    /// # Errors
+    /// Error where it is of another kind of FMU; then nothing changes.
+    pub fn restore(&mut self, saved: &Saved) -> Result<(), Fault> {
+        *self = self.read(&saved.bytes)?;
+        Ok(())
+    }
+
+    /// The instance of these bytes.
+    fn read(&self, bytes: &[u8]) -> Result<Instance<M>, Fault> {
         let (saved, rest) = postcard::take_from_bytes::<Instance<M>>(bytes)
             .map_err(|error| damaged(&error.to_string()))?;
         if !rest.is_empty() {
             return Err(damaged("it is too long"));
         }
-        saved.check_validity().map_err(|why| damaged(&why))?;
         if saved.interface != self.interface {
             return Err(Fault::error(
                 "the state is of an instance for another kind of FMU; co-simulation and model \
@@ -52,15 +84,6 @@ impl<M: Model> Instance<M> {
             ));
         }
         Ok(saved)
-    }
-
-    /// Goes on from where the instance was saved as these bytes.
-    ///
-    /// # Errors
-    /// As [`Instance::saved`]; then nothing changes.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Fault> {
-        *self = self.saved(bytes)?;
-        Ok(())
     }
 
     /// Checks that the numbers of an instance read from bytes fit together (see the
@@ -103,6 +126,12 @@ impl<M: Model> Instance<M> {
         }
         Ok(())
     }
+}
+
+/// The bytes are not those of an instance.
+#[cold]
+fn damaged(why: &str) -> Fault {
+    Fault::error(format!("the state is damaged ({why}); save it again"))
 }
 
 impl Experiment {

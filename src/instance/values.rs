@@ -2,7 +2,7 @@
 
 use super::derivatives::state_component;
 use super::phase::Phase;
-use super::{Exchange, Fault, Instance, Simulation};
+use super::{Fault, Instance, Simulation};
 use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::{Access, Kind, Variability, Variable};
@@ -89,27 +89,6 @@ const fn input_count<M: Model>() -> usize {
 }
 
 impl<M: Model> Instance<M> {
-    /// What can be read at present.
-    #[must_use]
-    pub fn view(&self) -> View<'_, M> {
-        let scene = &self.scene;
-        let (place, time, collapse) = match &self.simulation {
-            Simulation::Run(run) => (Place::On(run.motion()), run.time(), run.collapse()),
-            Simulation::Exchange(now) => (now.place(), &now.time, now.visible_collapse(scene)),
-            Simulation::NotBegun => {
-                // The drive counts from the start time.
-                let time = M::inputs_since(scene);
-                (Exchange::new(scene, *time).place(), time, None)
-            }
-        };
-        View {
-            scene,
-            place,
-            time,
-            collapse,
-        }
-    }
-
     /// Reads the variables of type `wanted` with these value references, each
     /// passed to `store` with its place. Booleans are 0 or 1, enumerations
     /// their item's number.
@@ -131,19 +110,16 @@ impl<M: Model> Instance<M> {
             }
         }
         let view = self.view();
-        let mut no_number = None;
-        for (place, &reference) in references.iter().enumerate() {
-            let variable = typed::<M>(reference, wanted)?;
-            let value = variable.value(&view);
-            if value.is_nan() {
-                no_number.get_or_insert(variable);
-            }
+        let mut all_numbers = true;
+        for place in 0..references.len() {
+            let value = typed::<M>(references[place], wanted)?.value(&view);
+            all_numbers &= !value.is_nan();
             store(place, value);
         }
-        match no_number {
-            None => Ok(()),
-            Some(variable) => Err(cannot_be_worked_out(&view, variable)),
+        if all_numbers {
+            return Ok(());
         }
+        Err(cannot_be_worked_out(&view, references))
     }
 
     /// Reads a state, where the motion stands at one that lies stored. Only compares and copies: no
@@ -384,16 +360,20 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Why a result is no number: there is no motion at the state, or what it is worked out from is
+/// Why one of these results is no number: there is no motion at the state, or what it is worked out from is
 /// beyond the range of numbers.
 #[cold]
-fn cannot_be_worked_out<M: Model>(view: &View<M>, variable: &Variable<M>) -> Fault {
+fn cannot_be_worked_out<M: Model>(view: &View<M>, references: &[u32]) -> Fault {
+    let name = references
+        .iter()
+        .map(|&reference| &M::VARIABLES[reference as usize])
+        .find(|row| row.value(view).is_nan())
+        .map_or("a result", |row| row.name);
     Fault::discard(match M::check_state(view) {
         Err(why) => format!("{why}; try a shorter step"),
         Ok(()) => format!(
-            "{} cannot be worked out at {}: it leads beyond the largest number, {:e}; try a shorter \
+            "{name} cannot be worked out at {}: it leads beyond the largest number, {:e}; try a shorter \
              step, or parameters nearer to their typical sizes",
-            variable.name,
             view.state_in_words(),
             f64::MAX
         ),

@@ -93,7 +93,7 @@ impl Substep {
         let Series { even, odd, .. } = &self.series;
         // In four sums, or each would wait for the one before.
         let sums: [f64; PAIRS / 2] = std::array::from_fn(|k| {
-            [even[k], even[k + 4], odd[k], odd[k + 4]]
+            [even[k], even[k + PAIRS / 2], odd[k], odd[k + PAIRS / 2]]
                 .map(f64::abs)
                 .iter()
                 .sum()

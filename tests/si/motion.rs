@@ -1,6 +1,7 @@
 //! The motion by the variables of the table.
 
 use crate::host::{Host, row};
+use dielectric_elastomer_actuator::instance::Saved;
 use serde_json::Value;
 
 fn read(name: &str) -> Value {
@@ -252,9 +253,9 @@ fn saved_instances_go_on_bit_for_bit() {
         let mut host = begun(&file, &settings);
         let end = number(&file["rows"][10]["t_s"]);
         host.follow(0.31 * end, 0.07 * end);
-        let bytes = host.instance.save(Vec::new()).expect("bytes");
+        let saved = host.instance.save(Saved::default()).expect("a state");
         let mut other = begun(&file, &settings);
-        other.instance.restore(&bytes).expect("a state");
+        other.instance.restore(&saved).expect("the same kind");
         other.time = host.time;
         for _ in 0..7 {
             host.step(0.031 * end);
@@ -284,8 +285,8 @@ fn an_instance_saved_after_breakdown_goes_on_bit_for_bit() {
         assert_eq!(host.get("broken_down"), 0.0);
         host.step(1e-5);
         assert_eq!(host.get("broken_down"), 1.0);
-        let bytes = host.instance.save(Vec::new()).expect("bytes");
-        other.instance.restore(&bytes).expect("a state");
+        let saved = host.instance.save(Saved::default()).expect("a state");
+        other.instance.restore(&saved).expect("the same kind");
         other.time = host.time;
         for host in [&mut host, &mut other] {
             host.step(2e-6);

@@ -1,7 +1,7 @@
 //! What cannot be meant is refused with the variable, the value, the limit and what to do.
 
 use crate::host::{Host, row};
-use dielectric_elastomer_actuator::instance::{Interface, Type};
+use dielectric_elastomer_actuator::instance::{Interface, Saved, Type};
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{Access, Kind, Meant};
 use dielectric_elastomer_actuator::si::Si;
@@ -179,7 +179,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
         }
         for (name, value) in [("J_m", 0.5), ("k1", -3.0)] {
             let before = host.get(name);
-            let saved = host.instance.save(Vec::new()).expect("bytes");
+            let saved = host.instance.save(Saved::default()).expect("a state");
             let fault = host.set(name, value).expect_err(name);
             assert!(
                 fault.text.contains(&format!("{name} = {value}")),
@@ -187,7 +187,10 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
             );
             assert!(fault.text.contains("lambda = 1."), "{fault:?}");
             assert_eq!(host.get(name), before);
-            assert_eq!(host.instance.save(Vec::new()).expect("bytes"), saved);
+            assert_eq!(
+                host.instance.save(Saved::default()).expect("a state"),
+                saved
+            );
         }
         if interface == Interface::CoSimulation {
             host.step(3e-7);
