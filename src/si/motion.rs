@@ -9,7 +9,7 @@ use super::folded::{Described, Folded};
 use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState};
 use super::trajectory::SiTrajectory;
 use super::{Si, SiLimit};
-use crate::actuator::device::{DeviceMotion, Exchanged, LocalDevice};
+use crate::actuator::device::{DeviceMotion, Elasticity, Exchanged, LocalDevice};
 use crate::actuator::scales::Scales;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::Integration;
@@ -372,7 +372,20 @@ impl Integration<Si> for SiMotion {
     }
 
     fn whereabouts(&self) -> String {
-        format!("stretch {}", Shortest(self.state().motion.position))
+        let stretch = self.stretch();
+        let locks = match &self.motion.device.elasticity {
+            Elasticity::Gent(locking) => [locking.smallest(), locking.largest()]
+                .iter()
+                .any(|wall| wall.plus(-stretch).value().abs() <= f64::EPSILON * stretch),
+            _ => false,
+        };
+        let remark = if locks {
+            ", where the material locks (the distance to its locking stretch is below the smallest number: J_m is \
+             too small for these loads)"
+        } else {
+            ""
+        };
+        format!("stretch {}{remark}", Shortest(stretch))
     }
 }
 

@@ -201,6 +201,21 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
     }
 }
 
+/// A material that locks so suddenly that no number holds how near it comes to its locking stretch: the message says so.
+#[test]
+fn a_material_that_locks_too_suddenly_is_named() {
+    for (limit, force) in [(1e-3, 0.03), (1e-3, -0.03)] {
+        let mut host = Host::begun(&[("J_m", limit), ("force", force)]);
+        let fault = host.instance.do_step(0.0, 2e-6).expect_err("the end");
+        let text = format!("{fault:?}");
+        assert!(text.contains("where the material locks"), "{text}");
+        assert!(text.contains("J_m is too small"), "{text}");
+        // It would turn where 1 - I/J is exp(-2 W/J), at a work W of the force of 1.8: far below the smallest number.
+        let work = 100.0 * 2.0 * (host.get("lambda") - 1.0).abs();
+        assert!((-2.0 * work / limit).exp() == 0.0, "{work}");
+    }
+}
+
 /// Breakdown is a flag, holds the actuator, or ends the simulation.
 #[test]
 fn breakdown_has_three_consequences() {
