@@ -295,7 +295,7 @@ impl SiScene {
 }
 
 impl SiScene {
-    /// Refuses a voltage or a force that is far beyond what the actuator can bear: a wrong power
+    /// Refuses a voltage, a charge or a force that is far beyond what the actuator can bear: a wrong power
     /// of ten, there or in its geometry and modulus.
     fn check_size(&self, scales: &Scales) -> Result<(), String> {
         let voltage = self.sources[0].value().abs() + self.alternating[0].abs();
@@ -317,6 +317,22 @@ impl SiScene {
                 MOST_FORCE * scales.force,
                 "N",
                 "mu*L*H*n_layers",
+            ),
+            (
+                self.source() == Source::Charge,
+                "charge_imposed",
+                self.sources[2].value(),
+                MOST_CHARGE * scales.charge,
+                "C",
+                "n_layers*L^2*sqrt(eps*mu)",
+            ),
+            (
+                self.folded().device.has_charge_state(),
+                "charge_start",
+                self.start.charge,
+                MOST_CHARGE * scales.charge,
+                "C",
+                "n_layers*L^2*sqrt(eps*mu)",
             ),
         ] {
             if given && value.abs() > most {
@@ -356,6 +372,9 @@ const MOST_FIELDS: f64 = 100.0;
 
 /// Largest voltage at the start, in units of V0: pull-in lies near 0.7.
 const MOST_VOLTAGE: f64 = 10.0;
+
+/// Largest charge at the start, in units of Q0: a neo-Hookean sheet that holds it has the stretch 10.
+const MOST_CHARGE: f64 = 1000.0;
 
 /// Largest force at the start, in units of P0.
 const MOST_FORCE: f64 = 100.0;

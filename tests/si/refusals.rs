@@ -201,6 +201,35 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
     }
 }
 
+/// A wrong power of ten within the limits of the variable, which the size of the actuator gives away.
+#[test]
+fn loads_out_of_proportion_are_refused_at_the_start() {
+    for (values, part) in [
+        (
+            vec![("voltage", 60e3)],
+            "voltage = 60000 V is out of proportion",
+        ),
+        (vec![("force", 0.3)], "force = 0.3 N is out of proportion"),
+        (
+            vec![("source_number", 3.0), ("charge_imposed", 10e-6)],
+            "charge_imposed = 1e-5 C is out of proportion to n_layers*L^2*sqrt(eps*mu)",
+        ),
+        (
+            vec![("R_s", 1e6), ("charge_start", -1e-6)],
+            "charge_start = -1e-6 C is out of proportion",
+        ),
+        (
+            vec![("source_number", 2.0), ("charge_start", 1e-6)],
+            "charge_start = 1e-6 C is out of proportion",
+        ),
+    ] {
+        let mut host = Host::initializing(Interface::CoSimulation, &values);
+        let text = host.instance.exit_initialization().expect_err(part).text;
+        assert!(text.contains(part), "{text}");
+        assert!(text.contains("set a value between -"), "{text}");
+    }
+}
+
 /// A material that locks so suddenly that no number holds how near it comes to its locking stretch: the message says so.
 #[test]
 fn a_material_that_locks_too_suddenly_is_named() {
