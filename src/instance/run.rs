@@ -112,6 +112,7 @@ impl<M: Model> Run<M> {
 
     pub(super) fn scene_changed(&mut self) {
         self.stale = true;
+        self.motion.scene_changed();
     }
 
     /// Refuses a step that cannot be meant. Returns by how much the host's clock is ahead

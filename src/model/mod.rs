@@ -200,6 +200,9 @@ pub trait Integration<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
         step: f64,
     ) -> Result<Progress<M::Limit>, Failure>;
 
+    /// The scene is not what has been followed any more: what is read before the next step follows it.
+    fn scene_changed(&mut self) {}
+
     /// Starts anew from the present state: the scene has changed.
     fn restart(&mut self);
 

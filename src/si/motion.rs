@@ -115,15 +115,19 @@ impl SiMotion {
         charge * self.scales.charge
     }
 
-    /// The derivative of the charge in A, from its polynomial, where it is a state that has moved.
+    /// The derivative of the charge in A, from its polynomial, where it is a state that has moved under the `source`,
+    /// nondimensional, that the scene has at `time`.
     #[must_use]
-    pub fn charging(&self) -> Option<f64> {
+    pub fn charging(&self, scene: &SiScene, time: &DoubleDouble, source: f64) -> Option<f64> {
         let SiTrajectory::Coupled(trajectory) = &self.trajectory else {
             return None;
         };
-        let has_charge = self.motion.device.has_charge_state() && !self.stale;
-        let slopes = trajectory.slopes().filter(|_| has_charge)?;
-        Some(slopes[0] * self.scales.current())
+        let slopes = trajectory.slopes()?;
+        let is_the_same = |load: f64| load == source && self.follows(scene);
+        let goes_on = self.motion.device.has_charge_state()
+            && (!self.stale
+                || is_the_same(self.at_present(time, |local, _| local.load(0.0).source)));
+        goes_on.then_some(slopes[0] * self.scales.current())
     }
 
     /// Energies lost and supplied since the start in J; 0 where they are not recorded.
@@ -174,14 +178,18 @@ impl SiMotion {
         look(&self.motion.at(&self.reached(time), &origin), &stage)
     }
 
-    /// Whether the actuator of the scene is the one that is followed.
+    /// Whether the actuator of the scene is known to be the one that is followed.
+    fn is_described(&self, scene: &SiScene) -> bool {
+        let described = self.described.as_ref();
+        described.is_some_and(|described| scene.is_still(described))
+    }
+
+    /// Whether the actuator of the scene is the one that is followed. What has no effect does not make it another,
+    /// so that a restored motion, whose description is not known, goes on as the saved one.
     fn follows(&self, scene: &SiScene) -> bool {
-        let same = match &self.described {
-            Some(described) => scene.is_still(described),
-            None => {
-                let Folded { device, scales, .. } = scene.folded();
-                device == self.motion.device && scales == self.scales
-            }
+        let same = self.is_described(scene) || {
+            let Folded { device, scales, .. } = scene.folded();
+            device == self.motion.device && scales == self.scales
         };
         same && scene.record_energy == self.motion.records_energy
     }
@@ -191,6 +199,9 @@ impl SiMotion {
     fn refold(&mut self, scene: &SiScene, time: &DoubleDouble) {
         self.stale = false;
         if self.follows(scene) {
+            if !self.is_described(scene) {
+                self.described = Some(scene.folded().of);
+            }
             let records = self.motion.records_energy;
             let before = records.then(|| self.at_present(time, |local, _| local.load(0.0).source));
             self.motion.drive = scene.drive(&self.scales);
@@ -344,6 +355,10 @@ impl Integration<Si> for SiMotion {
             return Ok(Progress::Whole);
         }
         self.advance_beyond_step(scene, clock, step)
+    }
+
+    fn scene_changed(&mut self) {
+        self.stale = true;
     }
 
     fn restart(&mut self) {

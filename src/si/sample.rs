@@ -349,10 +349,10 @@ impl View<'_, Si> {
     #[must_use]
     pub(super) fn sample(&self) -> Sample<f64> {
         let (basis, stage) = self.basis();
-        let charging = self
-            .charging()
-            .map(|current| current / basis.scales.current());
         let (load, rate) = (basis.load(0.0), basis.source_rate());
+        let charging = self
+            .charging(load.source)
+            .map(|current| current / basis.scales.current());
         let states = own(&self.state());
         basis.sample(load, rate, &stage, charging, (self.is_held(), states))
     }

@@ -81,10 +81,10 @@ impl View<'_, Si> {
         (basis, stage)
     }
 
-    /// The derivative of the charge in A, where it is known from the motion.
-    pub(super) fn charging(&self) -> Option<f64> {
+    /// The derivative of the charge in A, where it is known from the motion under this source, nondimensional.
+    pub(super) fn charging(&self, source: f64) -> Option<f64> {
         match self.place {
-            Place::On(motion) if !self.is_held() => motion.charging(),
+            Place::On(motion) if !self.is_held() => motion.charging(self.scene, self.time, source),
             _ => None,
         }
     }

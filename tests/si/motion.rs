@@ -268,6 +268,72 @@ fn saved_instances_go_on_bit_for_bit() {
     }
 }
 
+/// What is read between a change and the next step is that of the present: current and charge behind a resistance.
+#[test]
+fn currents_and_charges_follow_a_change_at_once() {
+    let mut host = Host::begun(&[("R_s", 1e6), ("G_p", 1e-9)]);
+    host.step(1e-7);
+    let law = |host: &Host, resistance: f64| {
+        let [supply, membrane, current] =
+            ["supply_voltage", "membrane_voltage", "supply_current"].map(|name| host.get(name));
+        let exact = (supply - membrane) / resistance;
+        assert!(
+            (current / exact - 1.0).abs() < 1e-9,
+            "{current} A for {exact} A"
+        );
+        assert!((host.get("electrical_power") / (supply * exact) - 1.0).abs() < 1e-9);
+        current
+    };
+    let before = law(&host, 1e6);
+    host.set("force", 1e-6).expect("a force");
+    assert_eq!(law(&host, 1e6), before);
+    host.set("voltage", 300.0).expect("a voltage");
+    assert!(law(&host, 1e6) < 0.0);
+    host.set("R_s", 2e6).expect("a resistance");
+    law(&host, 2e6);
+    host.set("G_p", 1e-7).expect("a conductance");
+    law(&host, 2e6);
+    host.step(1e-9);
+    law(&host, 2e6);
+    // An ideal source has charged the membrane; the resistance that is switched on finds it so.
+    let mut host = Host::begun(&[]);
+    host.step(1e-6);
+    let before = ["charge", "membrane_voltage"].map(|name| host.get(name));
+    host.set("R_s", 1e6).expect("a resistance");
+    let after = ["charge", "membrane_voltage"].map(|name| host.get(name));
+    for (before, after) in before.iter().zip(after) {
+        assert!((after / before - 1.0).abs() < 1e-14, "{before} to {after}");
+    }
+    assert!(host.get("supply_current").abs() < 1e-12);
+}
+
+/// A parameter that has no effect is tuned after a state was restored: the motion goes on as the saved one does.
+#[test]
+fn a_parameter_without_effect_does_not_tell_a_restored_instance() {
+    let settings = [("J_m", 60.0), ("eta", 0.01)];
+    for (name, value) in [
+        ("kappa2", 0.02),
+        ("tau_2", 3.0),
+        ("n_breakdown", 1.0),
+        ("voltage", 500.0),
+    ] {
+        let [mut host, mut other] = [Host::begun(&settings), Host::begun(&settings)];
+        host.step(3.3e-6);
+        other
+            .instance
+            .restore(&host.instance.save(Saved::default()).expect("a state"))
+            .expect("a state");
+        other.time = host.time;
+        for host in [&mut host, &mut other] {
+            host.set(name, value).expect(name);
+            host.step(1e-9);
+            host.step(2.7e-6);
+        }
+        let [ours, theirs] = [&host, &other].map(|host| host.get("lambda").to_bits());
+        assert_eq!(ours, theirs, "{name}");
+    }
+}
+
 /// Breakdown as a flag cuts a step of the motion in the middle of a communication step: what is saved
 /// at its end goes on, with and without a charge as a state, whether the motion had gone on before.
 #[test]
@@ -286,7 +352,8 @@ fn an_instance_saved_after_breakdown_goes_on_bit_for_bit() {
         host.step(1e-5);
         assert_eq!(host.get("broken_down"), 1.0);
         let saved = host.instance.save(Saved::default()).expect("a state");
-        other.instance.restore(&saved).expect("the same kind");
+        let read = other.instance.saved(saved.bytes()).expect("sound bytes");
+        other.instance.restore(&read).expect("the same kind");
         other.time = host.time;
         for host in [&mut host, &mut other] {
             host.step(2e-6);
