@@ -97,6 +97,25 @@ fn a_motion_next_to_rest_is_not_given_back() {
     assert_eq!(arrival.state, scene.start);
 }
 
+/// At each tolerance, and with steps that change on the way: near resonance the amplitude beats.
+#[test]
+fn neighbours_do_not_change_a_bit() {
+    let scenes: Vec<Scene> = (0..11)
+        .map(|k| {
+            let mut scene = alternating([0.05, 0.05, 0.2], 0.3, 0.1 + 0.02 * f64::from(k));
+            scene.parameters.aspect = 10.0 * f64::from(k + 1);
+            scene
+        })
+        .collect();
+    for tolerance in [1e-5, 1e-9, 1e-12] {
+        let outcomes = follow(&scenes, 1000.0, tolerance);
+        for (scene, among) in scenes.iter().zip(outcomes) {
+            let alone = follow(&[*scene], 1000.0, tolerance)[0];
+            assert_eq!(alone.expect("followed"), among.expect("followed"));
+        }
+    }
+}
+
 #[test]
 fn no_scene_has_no_outcome() {
     assert!(follow(&[], 100.0, 1e-9).is_empty());
@@ -108,13 +127,14 @@ proptest! {
     /// Bounded random scenes, more than there are lanes.
     #[test]
     fn random_scenes_move_as_they_do_alone(
-        numbers in prop::collection::vec((0.0..0.1_f64, 0.0..0.1_f64, 0.05..0.4_f64, 0.05..0.3_f64, 0.05..0.4_f64, -0.3..0.2_f64), 1..30),
+        numbers in prop::collection::vec((0.0..0.1_f64, 0.0..0.1_f64, 0.05..0.4_f64, 0.05..0.3_f64, 0.05..0.4_f64, -0.3..0.2_f64, 0.7..4.0_f64), 1..30),
         digits in 4..12_i32,
     ) {
         let scenes: Vec<Scene> = numbers
             .iter()
-            .map(|&(gamma, tau, elasticity, amplitude, frequency, prestress)| {
+            .map(|&(gamma, tau, elasticity, amplitude, frequency, prestress, decades)| {
                 let mut scene = alternating([gamma, tau, elasticity], amplitude, frequency);
+                scene.parameters.aspect = 10_f64.powf(decades);
                 scene.drive.prestress.set_value(prestress);
                 scene
             })

@@ -10,9 +10,6 @@ use crate::arithmetic::lanes::Lanes;
 use crate::arithmetic::number::Number;
 use crate::ensemble::{self, LANES, Row};
 
-/// Blocks of steps after which the angle of the drive is worked out anew from the time.
-const RENEWED: u32 = 32;
-
 /// The equations of motion of as many actuators as there are lanes. Voltage and
 /// prestress are constant but for the built-in alternating voltage.
 #[derive(Clone, Copy, Debug)]
@@ -25,8 +22,6 @@ pub struct Ensemble {
     angle: [Row; 2],
     /// Sine and cosine of ω times the step.
     turn: [Row; 2],
-    /// Blocks since the angle was worked out from the time.
-    since_renewal: [u32; LANES],
 }
 
 impl Ensemble {
@@ -45,7 +40,6 @@ impl Ensemble {
             amplitude: [0.0; LANES],
             angle: [[0.0; LANES], [1.0; LANES]],
             turn: [[0.0; LANES], [1.0; LANES]],
-            since_renewal: [0; LANES],
         }
     }
 }
@@ -86,16 +80,10 @@ impl ensemble::Ensemble for Ensemble {
         self.amplitude[lane] = harmonic.amplitude;
         let (sine, cosine) = (harmonic.frequency * step).sin_cos();
         (self.turn[0][lane], self.turn[1][lane]) = (sine, cosine);
-        self.since_renewal[lane] = RENEWED;
         self.see_from(lane, motion, time);
     }
 
     fn see_from(&mut self, lane: usize, motion: &Motion, time: &DoubleDouble) {
-        self.since_renewal[lane] += 1;
-        if self.since_renewal[lane] < RENEWED {
-            return;
-        }
-        self.since_renewal[lane] = 0;
         let (sine, cosine) = motion.drive.angle(*time).sin_cos();
         (self.angle[0][lane], self.angle[1][lane]) = (sine, cosine);
     }

@@ -1,12 +1,14 @@
-//! The multistep method of the ensemble: V. M. Falkner's (Phil. Mag. 21 (1936) 624–640) of order
-//! 10 for x'' = f, x and x' both carried along, predicted, evaluated and corrected with one
-//! evaluation of f a step.
+//! The multistep method of the ensemble: V. M. Falkner's (Phil. Mag. 21 (1936) 624–640) for
+//! x'' = f, x and x' both carried along, predicted, evaluated and corrected with one evaluation of
+//! f a step.
 //!
-//! With σ counted in steps from the present, f is interpolated at σ = 0, −1, … −9 and integrated
+//! With σ counted in steps from the present, f is interpolated at σ = 0, −1, … and integrated
 //! once and twice over 0 ≤ σ ≤ 1. What f then is at σ = 1 differs from the continued polynomial:
 //! this *miss*, times a constant, is the correction, and it estimates the error.
 //!
-//! The steps must be equal. A motion whose step has to change is started anew.
+//! The miss is the highest difference of f. What the correction adds to a step is therefore a sum
+//! over the same values of f as the next prediction, and one sum with one value more does both:
+//! a block carries the predicted x and x' along, and corrects them at its end.
 //!
 //! Gain over a collocation step in each lane, which needs seven evaluations of f for each unit of
 //! time where this method needs three: see `benchmark/records`, sweep.
@@ -15,43 +17,46 @@ use fearless_simd::Simd;
 
 use super::{LANES, Packed, Row};
 use crate::arithmetic::lanes::Lanes;
+use crate::solver::extremes::Extremes;
+use crate::solver::limits::Limits;
 
-/// Values of f that the method looks back on.
-pub const ORDER: usize = 10;
+/// Values of f that are kept from the steps before a block.
+pub const HISTORY: usize = 16;
 
 /// Steps that are taken between two looks at the lanes.
-pub const BLOCK: usize = 16;
+pub const BLOCK: usize = 32;
 
-/// Above this angle of the natural motion in a step the method is unstable (0.13 by experiment).
-pub const STABLE: f64 = 0.12;
+/// Steps from one estimate of the error to the next.
+const ESTIMATED: usize = 4;
 
-/// Integral weights of the interpolated f, and its continuation by a step.
-struct Weights {
-    /// ∫₀¹ L_j(σ) dσ, for x'.
-    once: [f64; ORDER],
-    /// ∫₀¹ (1 − σ) L_j(σ) dσ, for x.
-    twice: [f64; ORDER],
-    /// L_j(1).
-    continued: [f64; ORDER],
-    /// ∫₀¹ M(σ) dσ of what the miss adds, M = σ(σ+1)…(σ+9)/10!, for x'.
+/// The most values of f that a method looks back on.
+const MOST_POINTS: usize = 11;
+
+/// A method by the number of values of f that it looks back on.
+pub struct Method<const POINTS: usize> {
+    /// Weights of h²f for hx'.
+    once: [f64; POINTS],
+    /// Weights of h²f for x, beside x + hx'.
+    twice: [f64; POINTS],
+    /// Weights of h²f in its highest difference, the miss.
+    miss: [f64; POINTS],
+    /// What the miss corrects hx' by.
     miss_once: f64,
-    /// ∫₀¹ (1 − σ) M(σ) dσ, for x.
+    /// What the miss corrects x by.
     miss_twice: f64,
 }
-
-static WEIGHTS: Weights = weights();
 
 /// 27720 is divisible by each of 1 to 12.
 const DENOMINATOR: i128 = 27_720;
 
 /// The coefficients of Π (σ + i) over i from 0 to before `points`, without `left_out`, by powers of σ.
-pub const fn product(points: usize, left_out: usize) -> [i128; ORDER + 1] {
-    let mut coefficients = [0; ORDER + 1];
+pub const fn product(points: usize, left_out: usize) -> [i128; MOST_POINTS] {
+    let mut coefficients = [0; MOST_POINTS];
     coefficients[0] = 1;
     let mut i = 0;
     while i < points {
         if i != left_out {
-            let mut k = ORDER;
+            let mut k = MOST_POINTS - 1;
             while k > 0 {
                 coefficients[k] = coefficients[k] * i as i128 + coefficients[k - 1];
                 k -= 1;
@@ -64,10 +69,10 @@ pub const fn product(points: usize, left_out: usize) -> [i128; ORDER + 1] {
 }
 
 /// ∫₀¹ p dσ and ∫₀¹ (1 − σ) p dσ over `scale`, exact until the quotients.
-const fn integrals(p: [i128; ORDER + 1], scale: i128) -> (f64, f64) {
+const fn integrals(p: [i128; MOST_POINTS], scale: i128) -> (f64, f64) {
     let (mut once, mut moment) = (0, 0);
     let mut k = 0;
-    while k <= ORDER {
+    while k < MOST_POINTS {
         once += p[k] * (DENOMINATOR / (k as i128 + 1));
         moment += p[k] * (DENOMINATOR / (k as i128 + 2));
         k += 1;
@@ -88,34 +93,69 @@ pub const fn own(points: usize, j: usize) -> i128 {
     value
 }
 
-const fn weights() -> Weights {
-    let mut weights = Weights {
-        once: [0.0; ORDER],
-        twice: [0.0; ORDER],
-        continued: [0.0; ORDER],
-        miss_once: 0.0,
-        miss_twice: 0.0,
+impl<const POINTS: usize> Method<POINTS> {
+    /// The method, worked out by the compiler.
+    pub const WEIGHTS: Method<POINTS> = Method::new();
+
+    /// The correction falls with the step like its power of this order.
+    pub const FALL: f64 = (POINTS + 1) as f64;
+
+    /// The angle of the natural motion in a step up to which the method is used. It is stable a tenth
+    /// beyond, where the roots of its recurrence are smaller than 1.
+    pub const STABLE: f64 = match POINTS {
+        ..=9 => 0.2,
+        10 => 0.14,
+        _ => 0.12,
     };
-    let mut j = 0;
-    while j < ORDER {
-        let p = product(ORDER, j);
-        (weights.once[j], weights.twice[j]) = integrals(p, own(ORDER, j));
-        let (mut at_one, mut k) = (0, 0);
-        while k <= ORDER {
-            at_one += p[k];
-            k += 1;
+
+    /// The largest correction of a position in a step, over the tolerance and the position. What is
+    /// corrected is the method's error by one order less: the error that stays is far smaller, the
+    /// less so the lower the order.
+    pub const CORRECTION: f64 = match POINTS {
+        ..=10 => 0.003,
+        _ => 0.01,
+    };
+
+    const fn new() -> Method<POINTS> {
+        let mut factorial = 1;
+        let mut i = 2;
+        while i < POINTS as i128 {
+            factorial *= i;
+            i += 1;
         }
-        weights.continued[j] = (at_one / own(ORDER, j)) as f64;
-        j += 1;
+        // Of M = σ(σ+1)…/(POINTS − 1)!, by which the miss adds to the polynomial.
+        let (miss_once, miss_twice) = integrals(product(POINTS - 1, POINTS), factorial);
+        let mut method = Method {
+            once: [0.0; POINTS],
+            twice: [0.0; POINTS],
+            miss: [0.0; POINTS],
+            miss_once,
+            miss_twice,
+        };
+        let mut j = 0;
+        while j < POINTS {
+            let own = own(POINTS, j);
+            let (once, twice) = integrals(product(POINTS, j), own);
+            let miss = (factorial / own) as f64;
+            method.once[j] = once;
+            // With the correction of x' before.
+            method.twice[j] = twice + miss_once * miss;
+            method.miss[j] = miss;
+            j += 1;
+        }
+        method
     }
-    let all = product(ORDER, ORDER);
-    let (mut factorial, mut i) = (1, 2);
-    while i <= ORDER as i128 {
-        factorial *= i;
-        i += 1;
+
+    /// The miss by the values of h²f, the oldest first.
+    #[inline(always)]
+    fn miss<S: Simd, V: Lanes<S, LANES>>(simd: S, f: &[Row]) -> V {
+        let weights = &Self::WEIGHTS.miss;
+        let mut sum = V::load(simd, &f[0]) * V::fill(simd, weights[POINTS - 1]);
+        for j in (0..POINTS - 1).rev() {
+            sum = V::load(simd, &f[POINTS - 1 - j]).mul_add(V::fill(simd, weights[j]), sum);
+        }
+        sum
     }
-    (weights.miss_once, weights.miss_twice) = integrals(all, factorial);
-    weights
 }
 
 /// The motions of all lanes, each with steps of its own length, and what a block of steps leaves.
@@ -123,21 +163,42 @@ const fn weights() -> Weights {
 pub struct LaneStates {
     pub position: Row,
     pub rate: Row,
-    /// Length of a step; 0 where the lane is free.
+    /// Length of a step h; 0 where the lane is free.
     pub step: Row,
-    /// f at the places of the last steps, the oldest first; the block's own behind them.
-    pub f: [Row; ORDER + BLOCK],
+    /// 1/h; 0 where the lane is free.
+    pub inverse: Row,
+    /// h²f at the places of the last steps, the oldest first; the block's own behind them.
+    pub f: [Row; HISTORY + BLOCK],
     /// Positions and rates at the ends of the block's steps.
     pub positions: [Row; BLOCK],
     pub rates: [Row; BLOCK],
+    /// The limits of the position.
+    pub limits: [Row; 2],
+    /// The extremes before the block.
+    pub extremes: [Row; 2],
     /// The range that holds the motion in the block: between the ends of two steps it goes beyond
     /// both by less than |f| h²/8.
-    pub lowest: Row,
-    pub highest: Row,
-    /// The largest correction of a position by the miss.
+    pub range: [Row; 2],
+    /// The largest correction of a position by the miss, over what is allowed.
     pub correction: Row,
-    /// The largest natural frequency at the block's end, squared.
+    /// (ωh)² at the block's end over that up to which the method is stable, or more.
     pub stiffness: Row,
+    /// The largest of each since they were set to 0.
+    pub largest: [Row; 2],
+    /// Negative or NaN where a lane has to be looked at: the step is too long, or the motion may have
+    /// come to a limit or beyond its extremes.
+    pub margin: Row,
+}
+
+/// What a lane's motion may do in a block.
+#[derive(Clone, Copy, Debug)]
+pub struct Allowed {
+    /// The correction of a position, over the position.
+    pub correction: f64,
+    /// The angle ωh of the natural motion in a step.
+    pub angle: f64,
+    /// By how much (ωh)² may become larger.
+    pub stiffness: f64,
 }
 
 impl LaneStates {
@@ -146,58 +207,134 @@ impl LaneStates {
         position: [1.0; LANES],
         rate: [0.0; LANES],
         step: [0.0; LANES],
-        f: [[0.0; LANES]; ORDER + BLOCK],
+        inverse: [0.0; LANES],
+        f: [[0.0; LANES]; HISTORY + BLOCK],
         positions: [[1.0; LANES]; BLOCK],
         rates: [[0.0; LANES]; BLOCK],
-        lowest: [1.0; LANES],
-        highest: [1.0; LANES],
+        limits: [[0.0; LANES], [2.0; LANES]],
+        extremes: [[1.0; LANES]; 2],
+        range: [[1.0; LANES]; 2],
         correction: [0.0; LANES],
         stiffness: [0.0; LANES],
+        largest: [[0.0; LANES]; 2],
+        margin: [0.0; LANES],
     };
 
     /// Takes a block of steps in each lane.
     #[inline(always)]
-    pub fn go<S: Simd, V: Lanes<S, LANES>, P: Packed<V>>(&mut self, simd: S, packed: &mut P) {
+    pub fn go<const POINTS: usize, S: Simd, V: Lanes<S, LANES>, P: Packed<V>>(
+        &mut self,
+        simd: S,
+        packed: &mut P,
+        allowed: Allowed,
+    ) {
+        let method = &Method::<POINTS>::WEIGHTS;
         let fill = |value: f64| V::fill(simd, value);
-        let step = V::load(simd, &self.step);
+        let load = |row: &Row| V::load(simd, row);
+        let step = load(&self.step);
+        let inverse = load(&self.inverse);
         let square = step * step;
-        let mut position = V::load(simd, &self.position);
-        let mut rate = V::load(simd, &self.rate);
-        let (mut lowest, mut highest) = (position, position);
-        let (mut worst, mut largest) = (fill(0.0), fill(0.0));
+        let begin = load(&self.position);
+        let miss: V = Method::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
+        // Those predicted, x and hx'.
+        let mut position = begin - miss * fill(method.miss_twice);
+        let mut way = load(&self.rate) * step - miss * fill(method.miss_once);
+        let mut f = load(&self.f[HISTORY - 1]);
+        let mut range = [begin; 2];
+        let (mut worst, mut largest, mut miss) = (fill(0.0), fill(0.0), miss);
         for i in 0..BLOCK {
-            let mut once = V::load(simd, &self.f[i]) * fill(WEIGHTS.once[ORDER - 1]);
-            let mut twice = V::load(simd, &self.f[i]) * fill(WEIGHTS.twice[ORDER - 1]);
-            let mut continued = V::load(simd, &self.f[i]) * fill(WEIGHTS.continued[ORDER - 1]);
-            for j in (0..ORDER - 1).rev() {
-                let f = V::load(simd, &self.f[i + ORDER - 1 - j]);
-                once = f.mul_add(fill(WEIGHTS.once[j]), once);
-                twice = f.mul_add(fill(WEIGHTS.twice[j]), twice);
-                continued = f.mul_add(fill(WEIGHTS.continued[j]), continued);
+            // What depends on the last step comes last: a sum of all in turn would be waited for.
+            let oldest = load(&self.f[HISTORY + i - POINTS]);
+            let mut twice = oldest * fill(method.twice[POINTS - 1]);
+            let mut once = oldest * fill(method.once[POINTS - 1]);
+            for j in (1..POINTS - 1).rev() {
+                let f = load(&self.f[HISTORY - 1 + i - j]);
+                twice = f.mul_add(fill(method.twice[j]), twice);
+                once = f.mul_add(fill(method.once[j]), once);
             }
+            position = f.mul_add(fill(method.twice[0]), (position + way) + twice);
+            way = f.mul_add(fill(method.once[0]), way + once);
             packed.turn();
-            let drift = rate.mul_add(step, twice * square);
-            let predicted = (position + drift, once.mul_add(step, rate));
-            let f = packed.acceleration(predicted.0, predicted.1);
-            let miss = f - continued;
-            let corrected = miss * fill(WEIGHTS.miss_twice);
-            position = corrected.mul_add(square, predicted.0);
-            rate = (miss * fill(WEIGHTS.miss_once)).mul_add(step, predicted.1);
-            worst = worst.max(corrected.abs());
+            let rate = way * inverse;
+            f = packed.acceleration(position, rate) * square;
             largest = largest.max(f.abs());
-            lowest = lowest.min(position);
-            highest = highest.max(position);
-            self.f[i + ORDER] = f.store();
+            range = [range[0].min(position), range[1].max(position)];
+            self.f[HISTORY + i] = f.store();
             self.positions[i] = position.store();
             self.rates[i] = rate.store();
+            if (i + 1) % ESTIMATED == 0 {
+                miss = Method::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
+                worst = worst.max(miss.abs());
+            }
         }
+        let position = miss.mul_add(fill(method.miss_twice), position);
+        let rate = miss.mul_add(fill(method.miss_once), way) * inverse;
         self.position = position.store();
         self.rate = rate.store();
-        let beyond = largest * (square * fill(0.125));
-        self.lowest = (lowest - beyond).store();
-        self.highest = (highest + beyond).store();
-        self.correction = (worst * square).store();
-        self.stiffness = packed.stiffness(position).store();
+        let beyond = largest * fill(0.125);
+        let [low, high] = [range[0] - beyond, range[1] + beyond];
+        self.range = [low.store(), high.store()];
+        let correction = worst * fill(method.miss_twice / allowed.correction) / begin.abs();
+        let stiffness =
+            packed.stiffness(position) * square * fill(1.0 / (allowed.angle * allowed.angle));
+        self.correction = correction.store();
+        self.stiffness = stiffness.store();
+        self.largest = [
+            load(&self.largest[0]).max(correction).store(),
+            load(&self.largest[1]).max(stiffness).store(),
+        ];
+        let margin = (fill(1.0) - correction)
+            .min(fill(allowed.stiffness) - stiffness)
+            .min(low - load(&self.limits[0]))
+            .min(load(&self.limits[1]) - high)
+            .min(low - load(&self.extremes[0]))
+            .min(load(&self.extremes[1]) - high);
+        // NaN where the position is no number.
+        self.margin = position.mul_add(fill(0.0), margin).store();
+    }
+
+    /// Takes a motion into a lane that has swung this far and may go to the limits.
+    pub fn begin_with(&mut self, index: usize, extremes: Extremes, limits: Limits) {
+        self.limits[0][index] = limits.lower;
+        self.limits[1][index] = limits.upper;
+        self.set_extremes(index, extremes);
+    }
+
+    /// Notes how far the motion of a lane has swung.
+    pub fn set_extremes(&mut self, index: usize, extremes: Extremes) {
+        self.extremes[0][index] = extremes.lowest;
+        self.extremes[1][index] = extremes.highest;
+    }
+
+    /// How far the motion of a lane has swung.
+    pub fn extremes_of(&self, index: usize) -> Extremes {
+        Extremes {
+            lowest: self.extremes[0][index],
+            highest: self.extremes[1][index],
+        }
+    }
+
+    /// Gives a lane steps of this length.
+    pub fn set_step(&mut self, index: usize, step: f64) {
+        self.step[index] = step;
+        self.inverse[index] = 1.0 / step;
+        self.largest_since(index);
+    }
+
+    /// The largest correction and stiffness of a lane since they were last asked for.
+    pub fn largest_since(&mut self, index: usize) -> [f64; 2] {
+        let largest = self.largest.map(|row| row[index]);
+        self.largest.iter_mut().for_each(|row| row[index] = 0.0);
+        largest
+    }
+
+    /// Lets a lane rest at 1.
+    pub fn set_idle(&mut self, index: usize) {
+        self.step[index] = 0.0;
+        self.inverse[index] = 0.0;
+        self.position[index] = 1.0;
+        self.rate[index] = 0.0;
+        self.f.iter_mut().for_each(|row| row[index] = 0.0);
     }
 
     /// Makes the values of f at the block's end those that the next block looks back on.
@@ -214,20 +351,23 @@ mod tests {
     /// the double integral to 1/2, and a polynomial of degree 9 is continued exactly.
     #[test]
     fn the_weights_are_those_of_the_interpolation() {
-        assert!((WEIGHTS.once.iter().sum::<f64>() - 1.0).abs() < 1e-13);
-        assert!((WEIGHTS.twice.iter().sum::<f64>() - 0.5).abs() < 1e-13);
-        assert_eq!(WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
-        for degree in 0..ORDER as i32 {
+        let method = &Method::<11>::WEIGHTS;
+        assert!((method.once.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(Method::<10>::WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
+        for degree in 0..11 {
             let f = |sigma: f64| sigma.powi(degree);
-            let at = |weights: &[f64; ORDER]| -> f64 {
+            let at = |weights: &[f64; 11]| -> f64 {
                 let terms = weights.iter().enumerate();
                 terms.map(|(j, weight)| weight * f(-(j as f64))).sum()
             };
-            let (degree, size) = (f64::from(degree), 9_f64.powi(degree));
-            assert!((at(&WEIGHTS.once) - 1.0 / (degree + 1.0)).abs() < 1e-13 * size);
-            let twice = 1.0 / ((degree + 1.0) * (degree + 2.0));
-            assert!((at(&WEIGHTS.twice) - twice).abs() < 1e-13 * size);
-            assert!((at(&WEIGHTS.continued) - 1.0).abs() < 1e-12 * size);
+            let size = 10_f64.powi(degree);
+            let exact = 1.0 / f64::from(degree + 1);
+            assert!((at(&method.once) - exact).abs() < 1e-12 * size);
+            // The tenth difference of σ¹⁰ is 10!.
+            let miss = if degree == 10 { 3_628_800.0 } else { 0.0 };
+            assert!((at(&method.miss) - miss).abs() < 1e-12 * size);
+            let twice = 1.0 / f64::from((degree + 1) * (degree + 2)) + method.miss_once * miss;
+            assert!((at(&method.twice) - twice).abs() < 1e-12 * size);
         }
     }
 }

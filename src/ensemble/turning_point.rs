@@ -1,6 +1,6 @@
 //! Where a motion turns between two steps of the multistep method.
 
-use super::multistep::{BLOCK, LaneStates, ORDER, own, product};
+use super::multistep::{BLOCK, HISTORY, LaneStates, own, product};
 
 /// Values of f through which the polynomial goes.
 const POINTS: usize = 8;
@@ -10,6 +10,10 @@ const MOST_ITERATIONS: u32 = 6;
 
 /// Row k: by the values of f at σ = 0, −1, …, the coefficient of σᵏ of the polynomial through them.
 static POWERS: [[f64; POINTS]; POINTS] = powers();
+
+/// 1/(k + 1) and 1/(k + 2).
+static ONE_MORE: [f64; POINTS] = reciprocals(1);
+static TWO_MORE: [f64; POINTS] = reciprocals(2);
 
 const fn powers() -> [[f64; POINTS]; POINTS] {
     let mut table = [[0.0; POINTS]; POINTS];
@@ -27,6 +31,16 @@ const fn powers() -> [[f64; POINTS]; POINTS] {
     table
 }
 
+const fn reciprocals(more: usize) -> [f64; POINTS] {
+    let mut reciprocals = [0.0; POINTS];
+    let mut k = 0;
+    while k < POINTS {
+        reciprocals[k] = 1.0 / (k + more) as f64;
+        k += 1;
+    }
+    reciprocals
+}
+
 /// The positions at which the motion of a lane turns in the block that has been taken, which
 /// began at `rate`.
 pub fn turns(motions: &LaneStates, lane: usize, rate: f64) -> impl Iterator<Item = f64> + '_ {
@@ -36,36 +50,40 @@ pub fn turns(motions: &LaneStates, lane: usize, rate: f64) -> impl Iterator<Item
         } else {
             motions.rates[i - 1][lane]
         };
-        (before * motions.rates[i][lane] < 0.0).then(|| turn(motions, lane, i))
+        (before * motions.rates[i][lane] < 0.0).then(|| turn(motions, lane, i, before))
     })
 }
 
-/// The position at which the motion of a lane turns in step `i` of the block.
-fn turn(motions: &LaneStates, lane: usize, i: usize) -> f64 {
-    let step = motions.step[lane];
-    let value = |j: usize| motions.f[i + ORDER - j][lane];
-    let f: [f64; POINTS] = std::array::from_fn(|k| {
-        let terms = POWERS[k].iter().enumerate();
-        terms.map(|(j, weight)| weight * value(j)).sum()
+/// The position at which the motion of a lane turns in step `i` of the block, which began at rate
+/// `before`.
+fn turn(motions: &LaneStates, lane: usize, i: usize, before: f64) -> f64 {
+    // h²f, and hx' in the same units.
+    let values: [f64; POINTS] = std::array::from_fn(|j| motions.f[i + HISTORY - j][lane]);
+    let (step, rate) = (motions.step[lane], motions.rates[i][lane]);
+    let way = step * rate;
+    let f = POWERS.each_ref().map(|row| {
+        let terms = row.iter().zip(&values);
+        terms.fold(0.0, |sum, (weight, value)| sum + weight * value)
     });
-    let (position, rate) = (motions.positions[i][lane], motions.rates[i][lane]);
-    let horner = |sigma: f64, weight: fn(f64) -> f64| {
-        let terms = f.iter().enumerate().rev();
-        terms.fold(0.0, |sum, (k, f)| sum * sigma + f * weight(k as f64))
+    // Of the integrals.
+    let once: [f64; POINTS] = std::array::from_fn(|k| f[k] * ONE_MORE[k]);
+    let twice: [f64; POINTS] = std::array::from_fn(|k| once[k] * TWO_MORE[k]);
+    let horner = |coefficients: &[f64; POINTS], sigma: f64| {
+        let terms = coefficients.iter().rev();
+        terms.fold(0.0, |sum, term| sum * sigma + term)
     };
-    let mut sigma = 0.0;
+    let mut sigma = rate / (before - rate);
     for _ in 0..MOST_ITERATIONS {
-        let slope = rate + step * sigma * horner(sigma, |k| 1.0 / (k + 1.0));
-        let change = slope / (step * horner(sigma, |_| 1.0));
+        let change = (way + sigma * horner(&once, sigma)) / horner(&f, sigma);
         sigma -= change;
-        if change.abs() < 1e-9 {
+        // Squared by the next iteration, and once more in the position.
+        if change.abs() < 1e-4 {
             break;
         }
     }
     // Bounded, where the motion hardly turns at all.
     let sigma = sigma.clamp(-1.0, 0.0);
-    let bend = horner(sigma, |k| 1.0 / ((k + 1.0) * (k + 2.0)));
-    position + step * sigma * (rate + step * sigma * bend)
+    motions.positions[i][lane] + sigma * (way + sigma * horner(&twice, sigma))
 }
 
 #[cfg(test)]
@@ -79,15 +97,16 @@ mod tests {
         let step = 0.1;
         let mut motions = LaneStates::IDLE;
         motions.step = [step; LANES];
+        motions.inverse = [1.0 / step; LANES];
         let begin = std::f64::consts::PI - 7.3 * step;
         let time = |i: usize| begin + (i + 1) as f64 * step;
         for i in 0..BLOCK {
             motions.positions[i] = [time(i).cos(); LANES];
             motions.rates[i] = [-time(i).sin(); LANES];
         }
-        for k in 0..ORDER + BLOCK {
-            let t = begin + (k as f64 - ORDER as f64 + 1.0) * step;
-            motions.f[k] = [-t.cos(); LANES];
+        for k in 0..HISTORY + BLOCK {
+            let t = begin + (k as f64 - HISTORY as f64 + 1.0) * step;
+            motions.f[k] = [-step * step * t.cos(); LANES];
         }
         let found: Vec<f64> = turns(&motions, 3, -begin.sin()).collect();
         assert_eq!(found.len(), 1);
