@@ -53,8 +53,9 @@ impl View<'_, Nondimensional> {
     /// The limit at which the actuator is held. Where the simulation ends
     /// instead, the state on arrival remains.
     pub(crate) fn held(&self) -> Option<Limit> {
+        let collapse = self.collapse?;
         match self.scene.at_limit() {
-            AtLimit::Hold => self.collapse.map(|collapse| collapse.limit),
+            AtLimit::Hold => Some(collapse.limit),
             AtLimit::Terminate => None,
         }
     }

@@ -28,6 +28,9 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
+/// Endpoint-only steps that take less time than one with dense output.
+const TWO: f64 = 2.0;
+
 /// More endpoint-only steps are not made at once, since all are lost where a limit is met.
 const MOST_AT_ONCE: u32 = 8;
 
@@ -196,7 +199,7 @@ impl Trajectory {
             steps.endpoint.reach(rest, FEW) || many()
         } else {
             // 16 nodes take less time than several steps.
-            steps.endpoint.reach(rest, 1.0)
+            steps.endpoint.reach(rest, TWO)
         }
     }
 
