@@ -21,10 +21,10 @@ pub struct Before {
 impl Before {
     /// Whether the numbers can be those of a step.
     pub fn is_valid(&self) -> bool {
-        let numbers = self.g.iter().chain(&self.displacement);
-        numbers
-            .chain([&self.moved, &self.acceleration])
-            .all(|number| number.is_finite())
+        let mut numbers = self.g.iter().chain(&self.displacement);
+        self.moved.is_finite()
+            && self.acceleration.is_finite()
+            && numbers.all(|number| number.is_finite())
     }
 
     /// g of the step after on its plan, where this one had half the length `half` and the slope `slope`.

@@ -293,6 +293,7 @@ impl Trajectory {
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
     /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
     /// extreme.
+    #[inline(never)]
     fn go_to_end<E: Equation>(
         &mut self,
         equation: &E,
