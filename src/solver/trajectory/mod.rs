@@ -186,6 +186,7 @@ impl Trajectory {
 
     /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
     /// they are shorter, for where nothing but its end is.
+    #[inline(never)]
     fn takes_endpoint_steps<E: Equation>(&self, equation: &E, rest: f64) -> bool {
         let steps = &self.method;
         if !steps.takes_endpoint_steps {
@@ -293,7 +294,6 @@ impl Trajectory {
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
     /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
     /// extreme.
-    #[inline(never)]
     fn go_to_end<E: Equation>(
         &mut self,
         equation: &E,
