@@ -75,7 +75,8 @@ impl Account<Si> for SiAccount {
         };
         if scene.record_energy {
             let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
-            let before = scene.source_before(&basis.scales, basis.capacitance(state));
+            let (charge, capacitance) = (scene.start.charge, basis.capacitance(state));
+            let before = scene.source_before(&basis.scales, charge, capacitance);
             account.book_step(&basis, state, before);
             account.inputs = Inputs::of(scene, time);
         }
@@ -219,14 +220,14 @@ fn cubic([from, begin]: [f64; 2], [to, end]: [f64; 2], span: f64, part: f64) -> 
 }
 
 impl SiScene {
-    /// What an ideal source was before the start, nondimensional: it charges the actuator from
-    /// the charge at the start.
+    /// What an ideal source was, nondimensional, that finds this charge in C: it charges the actuator from there.
     pub(super) fn source_before(
         &self,
         scales: &crate::actuator::scales::Scales,
+        charge: f64,
         capacitance: f64,
     ) -> f64 {
-        let charge = self.start.charge / scales.charge;
+        let charge = charge / scales.charge;
         match self.source() {
             Source::Voltage => charge / capacitance,
             Source::Current | Source::Charge => charge,

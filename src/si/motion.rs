@@ -130,15 +130,26 @@ impl SiMotion {
         goes_on.then_some(slopes[0] * self.scales.current())
     }
 
-    /// Energies lost and supplied since the start in J; 0 where they are not recorded.
+    /// Energies lost and supplied since the start in J, with what an ideal source exchanges at once where the scene
+    /// has changed since; 0 where they are not recorded.
     #[must_use]
-    pub fn exchanged(&self) -> Exchanged {
-        Exchanged::from_integrals(
-            &self
-                .trajectory
-                .integrals()
-                .map(|sum| sum * self.scales.energy),
-        )
+    pub fn exchanged(&self, scene: &SiScene, time: &DoubleDouble) -> Exchanged {
+        let mut sums = self.trajectory.integrals();
+        if self.stale && self.motion.records_energy && self.follows(scene) {
+            let motion = DeviceMotion {
+                drive: scene.drive(&self.scales),
+                ..self.motion
+            };
+            let step = self.at_present(time, |local, stage| {
+                let (origin, _) = self.stretch_from_origin();
+                let now = motion.at(&self.reached(time), &origin);
+                now.exchanged_by_step(local.load(0.0).source, stage).all()
+            });
+            sums.iter_mut()
+                .zip(step)
+                .for_each(|(sum, step)| *sum += step);
+        }
+        Exchanged::from_integrals(&sums.map(|sum| sum * self.scales.energy))
     }
 
     /// The extremes of the stretch, where they are recorded.
@@ -216,7 +227,8 @@ impl SiMotion {
             charge: self.charge_on_electrodes(time),
             ..self.state()
         };
-        let (exchanged, extremes) = (self.exchanged(), self.extremes());
+        let (sums, extremes) = (self.trajectory.integrals(), self.extremes());
+        let energy = self.scales.energy / scales.energy;
         self.trajectory
             .begin_anew(scene, &motion, &scales, &state, self.tolerance);
         self.lead = 0.0;
@@ -226,8 +238,8 @@ impl SiMotion {
         self.described = Some(scene.folded().of);
         self.earlier = extremes;
         self.trajectory.record_extremes_anew(extremes.is_some());
-        self.trajectory
-            .book(&exchanged.all().map(|sum| sum / scales.energy));
+        self.trajectory.book(&sums.map(|sum| sum * energy));
+        self.book_charging(scene, time, state.charge);
     }
 
     /// A communication step in s as a nondimensional one, by which the trajectory comes to the clock
@@ -299,6 +311,15 @@ impl SiMotion {
         }
     }
 
+    /// Books what an ideal source exchanges that finds this charge, in C, on the electrodes.
+    fn book_charging(&mut self, scene: &SiScene, time: &DoubleDouble, charge: f64) {
+        let capacitance = self.at_present(time, |local, stage| {
+            local.capacitance(local.stretch(stage.position))
+        });
+        let before = scene.source_before(&self.scales, charge, capacitance);
+        self.book_step(time, before);
+    }
+
     /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
     fn book_step(&mut self, time: &DoubleDouble, before: f64) {
         if !self.motion.records_energy {
@@ -330,12 +351,7 @@ impl Integration<Si> for SiMotion {
             earlier: None,
         };
         Integration::record_anew(&mut begun, scene);
-        // An ideal source charges the membrane at once.
-        let capacitance = begun.at_present(time, |local, stage| {
-            local.capacitance(local.stretch(stage.position))
-        });
-        let before = scene.source_before(&scales, capacitance);
-        begun.book_step(time, before);
+        begun.book_charging(scene, time, scene.start.charge);
         begun
     }
 

@@ -120,7 +120,7 @@ impl View<'_, Si> {
     #[must_use]
     pub fn exchanged(&self) -> Exchanged {
         match self.place {
-            Place::On(motion) => motion.exchanged(),
+            Place::On(motion) => motion.exchanged(self.scene, self.time),
             Place::At { account, .. } => Exchanged::from_integrals(&account.exchanged),
         }
     }

@@ -1,5 +1,6 @@
 //! The actuator in SI units as a host sees it, without the C functions.
 
+mod at_once;
 mod dependencies;
 mod derivatives;
 mod exchange;
