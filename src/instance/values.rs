@@ -111,8 +111,8 @@ impl<M: Model> Instance<M> {
         }
         let view = self.view();
         let mut all_numbers = true;
-        for place in 0..references.len() {
-            let value = typed::<M>(references[place], wanted)?.value(&view);
+        for (place, &reference) in references.iter().enumerate() {
+            let value = typed::<M>(reference, wanted)?.value(&view);
             all_numbers &= !value.is_nan();
             store(place, value);
         }
