@@ -266,6 +266,7 @@ impl Trajectory {
 
     /// Follows the motion from its start for the time `step`, which a few endpoint-only steps take, and
     /// moves the start there. Where they do not reach it, they have not been made.
+    #[inline(never)]
     fn go_straight_to_end<E: Equation>(
         &mut self,
         equation: &E,
