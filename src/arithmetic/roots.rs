@@ -5,7 +5,14 @@
 /// "Illinois" rule of M. Dowell and P. Jarratt, BIT 11 (1971) 168–174), to
 /// the last bit of the offset or to an exact zero.
 #[must_use]
+#[inline]
 pub fn crossing(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    crossing_of(from, to, &f)
+}
+
+/// [`crossing`], compiled once for all functions.
+#[inline(never)]
+fn crossing_of(from: f64, to: f64, f: &dyn Fn(f64) -> f64) -> f64 {
     let (mut a, mut b) = (from, to);
     let (mut f_a, mut f_b) = (f(a), f(b));
     if f_a == 0.0 {

@@ -61,7 +61,8 @@ impl<M: Method> Integrator<M> {
         self.arrive(now);
     }
 
-    /// Records the extremes of the motion up to `target`.
+    /// Records the extremes of the motion up to `target`. Not inlined: seldom called, and from several places.
+    #[inline(never)]
     fn record(&mut self, target: DoubleDouble) {
         self.history.steps_mut()[self.index].segment.expand();
         let Some(mut extremes) = self.extremes else {
