@@ -1,7 +1,7 @@
 //! Many independent motions at once, one in each SIMD lane.
 //!
 //! Each lane takes equal steps of its own length by the method of `multistep`. The motion alone,
-//! by a [`Trajectory`], gives what that method looks back on at the start; where the step changes,
+//! by a [`Trajectory`](crate::solver::trajectory::Trajectory), gives what that method looks back on at the start; where the step changes,
 //! `history` gives it. The motion is followed alone again where a limit is near, and where it does
 //! not suit a multistep method. Between, one evaluation of f serves a step of all lanes.
 //!
