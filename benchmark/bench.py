@@ -166,12 +166,12 @@ def main() -> None:
         best_skips = records.fastest(skips)
         written.append(records.write(target / "skips_raw.csv", facts, skips))
         written.append(records.write(target / "skips.csv", facts, best_skips))
-        text += "\n" + ratios.skip_table(best_skips)
+        text += f"\nFor each unit of time, call or scene.\n\n{ratios.skip_table(best_skips)}\n"
     if ensembles:
         best_ensembles = records.fastest(ensembles)
         written.append(records.write(target / "ensemble_raw.csv", facts, ensembles))
         written.append(records.write(target / "ensemble.csv", facts, best_ensembles))
-        text += "\n" + ratios.ensemble_table(best_ensembles)
+        text += f"\nOne core.\n\n{ratios.ensemble_table(best_ensembles)}\n"
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")

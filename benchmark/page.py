@@ -7,14 +7,11 @@ Without a folder the newest record is taken. Each table of the page is known by 
 
 from __future__ import annotations
 
-import math
-import statistics
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 
 from cases import CASES, HERE, ROOT, random_cases
-from ratios import LEVELS, RIVAL, curve, time_at
+from ratios import LEVELS, ensemble_table, markdown, ratio, skip_table, times, with_summary
 from records import read
 
 PAGE = ROOT / "docs" / "performance.md"
@@ -46,27 +43,13 @@ def newest_record() -> Path:
     return max((HERE / "records").glob("*/*"), key=lambda folder: folder.name)
 
 
-def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    head, *body = ("| " + " | ".join(line) + " |" for line in (list(heads), *rows))
-    return "\n".join([head, "|---" * (head.count("|") - 1) + "|", *body])
-
-
-def _ratio(rows: list[dict], case: str, method: str, level: float) -> float:
-    own, rival = (time_at(curve(rows, case, name), level) for name in (method, RIVAL))
-    return rival / own if own and rival else math.nan
-
-
-def _times(ratio: float) -> str:
-    return "–" if math.isnan(ratio) else f"{ratio:.2g}×"
-
-
 def against_heyoka(rows: list[dict]) -> str:
     """How many times faster than heyoka in the cases, at equal error."""
     heads = [f"{case.title} ({case.name})" for case in CASES]
-    return _table(
+    return markdown(
         ["Error", "Actuator", *heads],
         (
-            [f"{level:g}", place, *(_times(_ratio(rows, case.name, method, level)) for case in CASES)]
+            [f"{level:g}", place, *(times(ratio(rows, case.name, method, level)) for case in CASES)]
             for place, method in PLACES.items()
             for level in LEVELS
         ),
@@ -76,31 +59,12 @@ def against_heyoka(rows: list[dict]) -> str:
 def random_sets(rows: list[dict]) -> str:
     """The same on the random sets."""
     names = [case.name for case in random_cases()]
-
-    def cells(method: str, level: float) -> list[str]:
-        ratios = [_ratio(rows, name, method, level) for name in names]
-        return [*map(_times, ratios), _times(statistics.median(ratios)), _times(min(ratios))]
-
-    return _table(
-        ["Error", "Actuator", *names, "median", "least"],
-        ([f"{level:g}", place, *cells(PLACES[place], level)] for place in DRIVEN for level in LEVELS),
-    )
-
-
-def many_scenes(rows: list[dict]) -> str:
-    """Nanoseconds of a scene in an ensemble and one by one."""
-    return _table(
-        ["64 scenes of 2000 units of time", "Tolerance", "ns a scene", "Error"],
-        (
-            [
-                f"{row['method']}, {row['inputs']}",
-                f"{float(row['tolerance']):g}",
-                f"{float(row['nanoseconds']):.3g}",
-                f"{float(row['error']):.0e}",
-            ]
-            for row in rows
-        ),
-    )
+    lines = []
+    for place in DRIVEN:
+        for level in LEVELS:
+            ratios = [ratio(rows, name, PLACES[place], level) for name in names]
+            lines.append([f"{level:g}", place, *with_summary(ratios)])
+    return markdown(["Error", "Actuator", *names, "median", "least"], lines)
 
 
 def communication_steps(rows: list[dict]) -> str:
@@ -116,7 +80,7 @@ def communication_steps(rows: list[dict]) -> str:
         }
         return [found[length] for length in lengths]
 
-    return _table(
+    return markdown(
         ["Step", *(f"{length:g}" for length in lengths)],
         (
             [f"{kind}: {call}" if number == 0 else call, *cells(case, inputs, tolerance)]
@@ -126,26 +90,13 @@ def communication_steps(rows: list[dict]) -> str:
     )
 
 
-def skipped(rows: list[dict]) -> str:
-    """Nanoseconds with something skipped and without."""
-    pairs: dict[str, dict[str, dict]] = {}
-    for row in rows:
-        pairs.setdefault(row["method"], {})[row["inputs"]] = row
-    lines = []
-    for name, pair in pairs.items():
-        fast, slow = (float(pair[kind]["nanoseconds"]) for kind in ("skipped", "not skipped"))
-        difference = float(pair["skipped"]["error"])
-        lines.append([name, f"{fast:.3g}", f"{slow:.3g}", f"{slow / fast:.2g}×", f"{difference:.0e}"])
-    return _table(["Skipped", "ns", "Not skipped, ns", "Gain", "Difference of the results"], lines)
-
-
 def tables(record: Path) -> list[str]:
     """All tables of the page that the record gives."""
     made = {
         "work_precision.csv": (against_heyoka, random_sets),
-        "ensemble.csv": (many_scenes,),
+        "ensemble.csv": (ensemble_table,),
         "co_simulation.csv": (communication_steps,),
-        "skips.csv": (skipped,),
+        "skips.csv": (skip_table,),
     }
     return [table(read(record / name)[1]) for name, makers in made.items() for table in makers]
 

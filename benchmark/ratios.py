@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import math
 import statistics
+from collections.abc import Iterable
 
 from cases import CASES, random_cases
 
@@ -38,6 +39,29 @@ def time_at(front: list[tuple[float, float]], error: float) -> float | None:
             part = math.log(error / e0) / math.log(e1 / e0)
             return t0 * (t1 / t0) ** part
     return front[-1][1]
+
+
+def ratio(rows: list[dict], case: str, method: str, level: float) -> float:
+    """How many times faster than heyoka a method is at an error; NaN where one of them is never that accurate."""
+    own, rival = (time_at(curve(rows, case, name), level) for name in (method, RIVAL))
+    return rival / own if own and rival else math.nan
+
+
+def times(ratio: float) -> str:
+    """A ratio as a cell."""
+    return "–" if math.isnan(ratio) else f"{ratio:.2g}×"
+
+
+def with_summary(ratios: list[float]) -> list[str]:
+    """Ratios as cells, and the median and the least of those that are known."""
+    known = [ratio for ratio in ratios if not math.isnan(ratio)]
+    return [times(ratio) for ratio in (*ratios, statistics.median(known), min(known))]
+
+
+def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """A table of these cells."""
+    head, *body = ("| " + " | ".join(line) + " |" for line in (list(heads), *rows))
+    return "\n".join([head, "|---" * (head.count("|") - 1) + "|", *body])
 
 
 def methods(rows: list[dict]) -> list[str]:
@@ -79,33 +103,25 @@ def random_table(rows: list[dict]) -> str:
     names = [case.name for case in random_cases() if case.name in timed]
     if not names:
         return ""
-    heads = [*names, "median", "least"]
-    lines = ["| method, error | " + " | ".join(heads) + " |", "|---" * (len(heads) + 1) + "|"]
+    lines = []
     for method in methods(rows):
         for level in LEVELS:
-            ratios = []
-            for name in names:
-                own = time_at(curve(rows, name, method), level)
-                rival = time_at(curve(rows, name, RIVAL), level)
-                ratios.append(rival / own if own and rival else math.nan)
-            known = [ratio for ratio in ratios if not math.isnan(ratio)]
-            if not known or method == RIVAL:
-                continue
-            shown = [*ratios, statistics.median(known), min(known)]
-            cells = ["–" if math.isnan(ratio) else f"{ratio:.2g}×" for ratio in shown]
-            lines.append(f"| {method}, {level:g} | " + " | ".join(cells) + " |")
-    return "Random sets: how many times faster than heyoka at equal error.\n\n" + "\n".join(lines) + "\n"
+            ratios = [ratio(rows, name, method, level) for name in names]
+            if method != RIVAL and not all(map(math.isnan, ratios)):
+                lines.append([f"{method}, {level:g}", *with_summary(ratios)])
+    table = markdown(["method, error", *names, "median", "least"], lines)
+    return f"Random sets: how many times faster than heyoka at equal error.\n\n{table}\n"
 
 
 def ensemble_table(rows: list[dict]) -> str:
     """Markdown: nanoseconds for each scene, scenes in a second on one core, and the error."""
-    lines = ["| many scenes, 2000 units of time each | tolerance | ns a scene | scenes a second | error |"]
-    lines.append("|---|---|---|---|---|")
+    lines = []
     for row in rows:
-        nanoseconds = float(row["nanoseconds"])
-        about = f"{row['method']}, {row['inputs']} | {float(row['tolerance']):g}"
-        lines.append(f"| {about} | {nanoseconds:.3g} | {1e9 / nanoseconds:.3g} | {float(row['error']):.0e} |")
-    return "One core.\n\n" + "\n".join(lines) + "\n"
+        nanoseconds, error = float(row["nanoseconds"]), float(row["error"])
+        about = [f"{row['method']}, {row['inputs']}", f"{float(row['tolerance']):g}"]
+        lines.append([*about, f"{nanoseconds:.3g}", f"{1e9 / nanoseconds:.3g}", f"{error:.0e}"])
+    heads = ["64 scenes of 2000 units of time", "Tolerance", "ns a scene", "Scenes a second", "Error"]
+    return markdown(heads, lines)
 
 
 def step_table(rows: list[dict]) -> str:
@@ -131,13 +147,13 @@ def step_table(rows: list[dict]) -> str:
 
 def skip_table(rows: list[dict]) -> str:
     """Markdown: what is skipped, nanoseconds with and without, and how much the result differs."""
-    lines = ["| skipped | ns | not skipped, ns | gain | difference |", "|---|---|---|---|---|"]
+    lines = []
     for name in methods(rows):
         pair = {row["inputs"]: row for row in rows if row["method"] == name}
         fast, slow = (float(pair[kind]["nanoseconds"]) for kind in ("skipped", "not skipped"))
         difference = float(pair["skipped"]["error"])
-        lines.append(f"| {name} | {fast:.3g} | {slow:.3g} | {slow / fast:.2g}× | {difference:.0e} |")
-    return "For each unit of time, call or scene.\n\n" + "\n".join(lines) + "\n"
+        lines.append([name, f"{fast:.3g}", f"{slow:.3g}", f"{slow / fast:.2g}×", f"{difference:.0e}"])
+    return markdown(["Skipped", "ns", "Not skipped, ns", "Gain", "Difference of the results"], lines)
 
 
 def _cell(row: dict | None) -> str:
