@@ -1,9 +1,11 @@
 //! Many independent motions at once, one in each SIMD lane.
 //!
-//! Each lane takes equal steps of its own length by the method of `multistep`. The motion alone,
-//! by a [`Trajectory`](crate::solver::trajectory::Trajectory), gives what that method looks back on at the start; where the step changes,
-//! `history` gives it. The motion is followed alone again where a limit is near, and where it does
-//! not suit a multistep method. Between, one evaluation of f serves a step of all lanes.
+//! Each lane takes equal steps of its own length by the method of `multistep`. What that method looks
+//! back on comes from the motion followed alone, by a [`Trajectory`], at the start, and from `history`
+//! where the step changes. The motion is followed alone again where a limit is near, and where it
+//! does not suit a multistep method. Between, one evaluation of f serves a step of all lanes.
+//!
+//! [`Trajectory`]: crate::solver::trajectory::Trajectory
 //!
 //! Memory does not grow with the length of the motions: a few hundred bytes for each of them.
 
@@ -22,7 +24,7 @@ mod multistep;
 mod queue;
 mod turning_point;
 
-use multistep::{Allowed, LaneStates};
+use multistep::LaneStates;
 use queue::Queue;
 
 /// Motions that are followed at once.
@@ -117,7 +119,7 @@ fn go<const POINTS: usize, F: Ensemble>(
     level: Level,
     ensemble: &mut F,
     motions: &mut LaneStates,
-    allowed: Allowed,
+    allowed: f64,
 ) {
     #[cfg(target_arch = "x86_64")]
     if let Some(avx512) = level.as_avx512() {
@@ -134,7 +136,7 @@ fn go_with<const POINTS: usize, S: Simd, F: Ensemble>(
     simd: S,
     ensemble: &mut F,
     motions: &mut LaneStates,
-    allowed: Allowed,
+    allowed: f64,
 ) {
     motions.go_on();
     let mut packed = ensemble.pack::<S, f64x8<S>>(simd);

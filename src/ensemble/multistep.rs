@@ -26,14 +26,17 @@ pub const HISTORY: usize = 16;
 /// Steps that are taken between two looks at the lanes.
 pub const BLOCK: usize = 32;
 
+/// By which factor (ωh)² may become larger than where the formula is stable.
+pub const STIFFER: f64 = 1.2;
+
 /// Steps from one estimate of the error to the next.
 const ESTIMATED: usize = 4;
 
-/// The most values of f that a method looks back on.
+/// The most values of f that a formula looks back on.
 const MOST_POINTS: usize = 11;
 
-/// A method by the number of values of f that it looks back on.
-pub struct Method<const POINTS: usize> {
+/// The formula by the number of values of f that it looks back on.
+pub struct Formula<const POINTS: usize> {
     /// Weights of h²f for hx'.
     once: [f64; POINTS],
     /// Weights of h²f for x, beside x + hx'.
@@ -93,9 +96,9 @@ pub const fn own(points: usize, j: usize) -> i128 {
     value
 }
 
-impl<const POINTS: usize> Method<POINTS> {
-    /// The method, worked out by the compiler.
-    pub const WEIGHTS: Method<POINTS> = Method::new();
+impl<const POINTS: usize> Formula<POINTS> {
+    /// The formula, worked out by the compiler.
+    pub const WEIGHTS: Formula<POINTS> = Formula::new();
 
     /// The correction falls with the step like its power of this order.
     pub const FALL: f64 = (POINTS + 1) as f64;
@@ -116,7 +119,7 @@ impl<const POINTS: usize> Method<POINTS> {
         _ => 0.01,
     };
 
-    const fn new() -> Method<POINTS> {
+    const fn new() -> Formula<POINTS> {
         let mut factorial = 1;
         let mut i = 2;
         while i < POINTS as i128 {
@@ -125,7 +128,7 @@ impl<const POINTS: usize> Method<POINTS> {
         }
         // Of M = σ(σ+1)…/(POINTS − 1)!, by which the miss adds to the polynomial.
         let (miss_once, miss_twice) = integrals(product(POINTS - 1, POINTS), factorial);
-        let mut method = Method {
+        let mut formula = Formula {
             once: [0.0; POINTS],
             twice: [0.0; POINTS],
             miss: [0.0; POINTS],
@@ -137,13 +140,13 @@ impl<const POINTS: usize> Method<POINTS> {
             let own = own(POINTS, j);
             let (once, twice) = integrals(product(POINTS, j), own);
             let miss = (factorial / own) as f64;
-            method.once[j] = once;
+            formula.once[j] = once;
             // With the correction of x' before.
-            method.twice[j] = twice + miss_once * miss;
-            method.miss[j] = miss;
+            formula.twice[j] = twice + miss_once * miss;
+            formula.miss[j] = miss;
             j += 1;
         }
-        method
+        formula
     }
 
     /// The miss by the values of h²f, the oldest first.
@@ -190,17 +193,6 @@ pub struct LaneStates {
     pub margin: Row,
 }
 
-/// What a lane's motion may do in a block.
-#[derive(Clone, Copy, Debug)]
-pub struct Allowed {
-    /// The correction of a position, over the position.
-    pub correction: f64,
-    /// The angle ωh of the natural motion in a step.
-    pub angle: f64,
-    /// By how much (ωh)² may become larger.
-    pub stiffness: f64,
-}
-
 impl LaneStates {
     /// All lanes rest at 1.
     pub const IDLE: LaneStates = LaneStates {
@@ -220,40 +212,40 @@ impl LaneStates {
         margin: [0.0; LANES],
     };
 
-    /// Takes a block of steps in each lane.
+    /// Takes a block of steps in each lane; `allowed` is the largest correction of a position, over the position.
     #[inline(always)]
     pub fn go<const POINTS: usize, S: Simd, V: Lanes<S, LANES>, P: Packed<V>>(
         &mut self,
         simd: S,
         packed: &mut P,
-        allowed: Allowed,
+        allowed: f64,
     ) {
-        let method = &Method::<POINTS>::WEIGHTS;
+        let formula = &Formula::<POINTS>::WEIGHTS;
         let fill = |value: f64| V::fill(simd, value);
         let load = |row: &Row| V::load(simd, row);
         let step = load(&self.step);
         let inverse = load(&self.inverse);
         let square = step * step;
         let begin = load(&self.position);
-        let miss: V = Method::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
+        let miss: V = Formula::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
         // Those predicted, x and hx'.
-        let mut position = begin - miss * fill(method.miss_twice);
-        let mut way = load(&self.rate) * step - miss * fill(method.miss_once);
+        let mut position = begin - miss * fill(formula.miss_twice);
+        let mut way = load(&self.rate) * step - miss * fill(formula.miss_once);
         let mut f = load(&self.f[HISTORY - 1]);
         let mut range = [begin; 2];
         let (mut worst, mut largest, mut miss) = (fill(0.0), fill(0.0), miss);
         for i in 0..BLOCK {
             // What depends on the last step comes last: a sum of all in turn would be waited for.
             let oldest = load(&self.f[HISTORY + i - POINTS]);
-            let mut twice = oldest * fill(method.twice[POINTS - 1]);
-            let mut once = oldest * fill(method.once[POINTS - 1]);
+            let mut twice = oldest * fill(formula.twice[POINTS - 1]);
+            let mut once = oldest * fill(formula.once[POINTS - 1]);
             for j in (1..POINTS - 1).rev() {
                 let f = load(&self.f[HISTORY - 1 + i - j]);
-                twice = f.mul_add(fill(method.twice[j]), twice);
-                once = f.mul_add(fill(method.once[j]), once);
+                twice = f.mul_add(fill(formula.twice[j]), twice);
+                once = f.mul_add(fill(formula.once[j]), once);
             }
-            position = f.mul_add(fill(method.twice[0]), (position + way) + twice);
-            way = f.mul_add(fill(method.once[0]), way + once);
+            position = f.mul_add(fill(formula.twice[0]), (position + way) + twice);
+            way = f.mul_add(fill(formula.once[0]), way + once);
             packed.turn();
             let rate = way * inverse;
             f = packed.acceleration(position, rate) * square;
@@ -263,20 +255,20 @@ impl LaneStates {
             self.positions[i] = position.store();
             self.rates[i] = rate.store();
             if (i + 1) % ESTIMATED == 0 {
-                miss = Method::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
+                miss = Formula::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
                 worst = worst.max(miss.abs());
             }
         }
-        let position = miss.mul_add(fill(method.miss_twice), position);
-        let rate = miss.mul_add(fill(method.miss_once), way) * inverse;
+        let position = miss.mul_add(fill(formula.miss_twice), position);
+        let rate = miss.mul_add(fill(formula.miss_once), way) * inverse;
         self.position = position.store();
         self.rate = rate.store();
         let beyond = largest * fill(0.125);
         let [low, high] = [range[0] - beyond, range[1] + beyond];
         self.range = [low.store(), high.store()];
-        let correction = worst * fill(method.miss_twice / allowed.correction) / begin.abs();
-        let stiffness =
-            packed.stiffness(position) * square * fill(1.0 / (allowed.angle * allowed.angle));
+        let correction = worst * fill(formula.miss_twice / allowed) / begin.abs();
+        let angle = Formula::<POINTS>::STABLE;
+        let stiffness = packed.stiffness(position) * square * fill(1.0 / (angle * angle));
         self.correction = correction.store();
         self.stiffness = stiffness.store();
         self.largest = [
@@ -284,7 +276,7 @@ impl LaneStates {
             load(&self.largest[1]).max(stiffness).store(),
         ];
         let margin = (fill(1.0) - correction)
-            .min(fill(allowed.stiffness) - stiffness)
+            .min(fill(STIFFER) - stiffness)
             .min(low - load(&self.limits[0]))
             .min(load(&self.limits[1]) - high)
             .min(low - load(&self.extremes[0]))
@@ -347,13 +339,13 @@ impl LaneStates {
 mod tests {
     use super::*;
 
-    /// The classical coefficients of the Adams–Bashforth formula of order 10 sum up to 1, those of
-    /// the double integral to 1/2, and a polynomial of degree 9 is continued exactly.
+    /// The first weight is that of the Adams–Bashforth formula of order 10, and polynomials up to degree 10 are
+    /// integrated exactly, the correction included.
     #[test]
     fn the_weights_are_those_of_the_interpolation() {
-        let method = &Method::<11>::WEIGHTS;
-        assert!((method.once.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        assert_eq!(Method::<10>::WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
+        let formula = &Formula::<11>::WEIGHTS;
+        assert!((formula.once.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_eq!(Formula::<10>::WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
         for degree in 0..11 {
             let f = |sigma: f64| sigma.powi(degree);
             let at = |weights: &[f64; 11]| -> f64 {
@@ -362,12 +354,12 @@ mod tests {
             };
             let size = 10_f64.powi(degree);
             let exact = 1.0 / f64::from(degree + 1);
-            assert!((at(&method.once) - exact).abs() < 1e-12 * size);
+            assert!((at(&formula.once) - exact).abs() < 1e-12 * size);
             // The tenth difference of σ¹⁰ is 10!.
             let miss = if degree == 10 { 3_628_800.0 } else { 0.0 };
-            assert!((at(&method.miss) - miss).abs() < 1e-12 * size);
-            let twice = 1.0 / f64::from((degree + 1) * (degree + 2)) + method.miss_once * miss;
-            assert!((at(&method.twice) - twice).abs() < 1e-12 * size);
+            assert!((at(&formula.miss) - miss).abs() < 1e-12 * size);
+            let twice = 1.0 / f64::from((degree + 1) * (degree + 2)) + formula.miss_once * miss;
+            assert!((at(&formula.twice) - twice).abs() < 1e-12 * size);
         }
     }
 }

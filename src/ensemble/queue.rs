@@ -3,7 +3,7 @@
 
 use fearless_simd::Level;
 
-use super::multistep::{Allowed, BLOCK, HISTORY, LaneStates, Method};
+use super::multistep::{BLOCK, Formula, HISTORY, LaneStates, STIFFER};
 use super::{Arrival, Ensemble, LANES, Member, history, turning_point};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
@@ -53,7 +53,8 @@ pub struct Queue<'a, const POINTS: usize, E> {
     start: DoubleDouble,
     end: DoubleDouble,
     tolerance: f64,
-    allowed: Allowed,
+    /// The largest correction of a position in a step, over the position.
+    correction: f64,
     /// The motion that the next free lane takes.
     next: usize,
     arrivals: Vec<Result<Arrival, Failure>>,
@@ -81,11 +82,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             start,
             end,
             tolerance,
-            allowed: Allowed {
-                correction: Method::<POINTS>::CORRECTION * tolerance,
-                angle: Method::<POINTS>::STABLE,
-                stiffness: 1.2,
-            },
+            correction: Formula::<POINTS>::CORRECTION * tolerance,
             next: 0,
             arrivals: vec![Ok(blank); motions.len()],
         }
@@ -103,7 +100,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         }
         while lanes.iter().any(Option::is_some) {
             let begin = (packed.position, packed.rate);
-            super::go::<POINTS, F>(self.level, ensemble, &mut packed, self.allowed);
+            super::go::<POINTS, F>(self.level, ensemble, &mut packed, self.correction);
             for (index, place) in lanes.iter_mut().enumerate() {
                 let Some(lane) = place else {
                     continue;
@@ -178,8 +175,8 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         } = &self.motions[lane.motion];
         let frequency = equation.seen_from(&self.start).natural_frequency(state);
         // As long as the method is stable; at a tight tolerance less, by experience.
-        let by_error = (self.tolerance / 1e-7).powf(1.0 / Method::<POINTS>::FALL);
-        let free = self.allowed.angle / frequency * by_error.min(1.0);
+        let by_error = (self.tolerance / 1e-7).powf(1.0 / Formula::<POINTS>::FALL);
+        let free = Formula::<POINTS>::STABLE / frequency * by_error.min(1.0);
         let rest = self.end.since(lane.time);
         let looked_back = (POINTS - 1) as f64;
         let blocks = ((rest / free - looked_back) / BLOCK as f64).ceil();
@@ -208,11 +205,25 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         let State { position, rate } = alone.state();
         packed.position[index] = position;
         packed.rate[index] = rate;
-        packed.set_step(index, step);
-        lane.left = blocks as u64;
-        lane.due = lane.left.min(CALM_BLOCKS);
-        ensemble.put(index, equation, &lane.time, step);
+        self.take_steps(lane, ensemble, packed, index, step, blocks as u64);
         true
+    }
+
+    /// Gives a lane so many blocks of steps of this length from its present time on, until the end.
+    fn take_steps<F: Ensemble<Equation = E>>(
+        &self,
+        lane: &mut Lane,
+        ensemble: &mut F,
+        packed: &mut LaneStates,
+        index: usize,
+        step: f64,
+        blocks: u64,
+    ) {
+        packed.set_step(index, step);
+        lane.left = blocks;
+        lane.due = blocks.min(CALM_BLOCKS);
+        let equation = &self.motions[lane.motion].equation;
+        ensemble.put(index, equation, &lane.time, step);
     }
 
     /// Goes on in equal steps of at most `free` from a state that a lane has come to, by the `known`
@@ -245,12 +256,8 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         for (back, value) in values.into_iter().enumerate() {
             packed.f[BLOCK + HISTORY - 1 - back][index] = value;
         }
-        packed.set_step(index, step);
         lane.known = known;
-        lane.left = blocks as u64;
-        lane.due = lane.left.min(CALM_BLOCKS);
-        let equation = &self.motions[lane.motion].equation;
-        ensemble.put(index, equation, &lane.time, step);
+        self.take_steps(lane, ensemble, packed, index, step, blocks as u64);
         true
     }
 
@@ -279,14 +286,13 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         };
         let within = |value: f64, most: f64| (0.0..=most).contains(&value);
         // NaN is in neither range.
-        let fits = within(ratio, 1.0)
-            && within(stiffness, self.allowed.stiffness)
-            && packed.position[index].is_finite();
+        let fits =
+            within(ratio, 1.0) && within(stiffness, STIFFER) && packed.position[index].is_finite();
         if !fits {
             lane.time = after(lane, lane.passed - 1);
             lane.passed = 0;
             let by_error = if ratio.is_finite() {
-                (0.8 * ratio.max(1.0).powf(-1.0 / Method::<POINTS>::FALL)).clamp(0.3, 0.8)
+                (0.8 * ratio.max(1.0).powf(-1.0 / Formula::<POINTS>::FALL)).clamp(0.3, 0.8)
             } else {
                 0.3
             };
@@ -333,7 +339,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         let [ratio, stiffness] = packed.largest_since(index);
         let stable = stable_step(stiffness);
         if ratio < IDLE_CORRECTION && 1.4 * step < stable {
-            let growth = (0.85 * ratio.max(1e-30).powf(-1.0 / Method::<POINTS>::FALL)).min(2.0);
+            let growth = (0.85 * ratio.max(1e-30).powf(-1.0 / Formula::<POINTS>::FALL)).min(2.0);
             let longer = (growth * step).min(0.95 * stable);
             let history = [HISTORY + BLOCK - 1, known + BLOCK];
             return self.change(lane, ensemble, packed, index, history, longer)
@@ -358,9 +364,8 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         let before = lane.time.since(self.start);
         let mut time = lane.time;
         let progress = alone.advance(equation, &mut time, self.end.since(lane.time));
-        if let Some(Extremes { lowest, highest }) = alone.extremes() {
-            extremes.include(lowest);
-            extremes.include(highest);
+        if let Some(more) = alone.extremes() {
+            extremes.include_all(more);
         }
         self.arrivals[lane.motion] = progress.map(|progress| Arrival {
             state: alone.state(),

@@ -156,9 +156,8 @@ impl SiMotion {
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
         let mut extremes = self.trajectory.extremes()?;
-        if let Some(Extremes { lowest, highest }) = self.earlier {
-            extremes.include(lowest);
-            extremes.include(highest);
+        if let Some(earlier) = self.earlier {
+            extremes.include_all(earlier);
         }
         Some(extremes)
     }

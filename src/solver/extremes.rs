@@ -27,6 +27,12 @@ impl Extremes {
         self.highest = self.highest.max(position);
     }
 
+    /// Takes another motion, or another part of this one, into account.
+    pub fn include_all(&mut self, other: Extremes) {
+        self.include(other.lowest);
+        self.include(other.highest);
+    }
+
     /// Whether the numbers can be those of a motion.
     #[must_use]
     pub fn is_valid(&self) -> bool {

@@ -21,10 +21,10 @@ pub struct Before {
 impl Before {
     /// Whether the numbers can be those of a step.
     pub fn is_valid(&self) -> bool {
-        // 0 times a number that is not finite is none.
-        let nothing = |g: f64, displacement: f64| 0.0 * g + 0.0 * displacement;
-        let of_nodes = (0..NODES).map(|node| nothing(self.g[node], self.displacement[node]));
-        of_nodes.sum::<f64>() + nothing(self.moved, self.acceleration) == 0.0
+        let of_nodes = self.g.iter().chain(&self.displacement);
+        of_nodes
+            .chain([&self.moved, &self.acceleration])
+            .all(|number| number.is_finite())
     }
 
     /// g of the step after on its plan, where this one had half the length `half` and the slope `slope`.

@@ -28,8 +28,8 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
-/// Endpoint-only steps that take less time than one with dense output.
-const TWO: f64 = 2.0;
+/// So many endpoint-only steps take no longer than one with dense output.
+const PER_DENSE_STEP: f64 = 2.0;
 
 /// More endpoint-only steps are not made at once, since all are lost where a limit is met.
 const MOST_AT_ONCE: u32 = 8;
@@ -199,8 +199,7 @@ impl Trajectory {
             // A few take no longer than to look for an orbit.
             steps.endpoint.reach(rest, FEW) || many()
         } else {
-            // 16 nodes take less time than several steps.
-            steps.endpoint.reach(rest, TWO)
+            steps.endpoint.reach(rest, PER_DENSE_STEP)
         }
     }
 
@@ -281,15 +280,20 @@ impl Trajectory {
             bounds: self.bounds(),
             budget: MOST_AT_ONCE,
         };
-        let control = self.step_control(false);
-        let steps = &mut self.method.endpoint;
-        let end = steps.go(self.level, equation, control, &mut way);
+        let end = self.go(equation, &mut way);
         if end == End::Reached {
             self.start = way.state;
         } else {
-            steps.restart();
+            self.method.endpoint.restart();
         }
         end
+    }
+
+    /// Goes the way by endpoint-only steps as far as they can.
+    fn go<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
+        let control = self.step_control(false);
+        let steps = &mut self.method.endpoint;
+        steps.go(self.level, equation, control, way)
     }
 
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
@@ -311,9 +315,7 @@ impl Trajectory {
             bounds: self.bounds(),
             budget: *budget,
         };
-        let control = self.step_control(false);
-        let steps = &mut self.method.endpoint;
-        let end = steps.go(self.level, equation, control, &mut way);
+        let end = self.go(equation, &mut way);
         *budget = way.budget;
         let shift = if end == End::Reached {
             target

@@ -143,12 +143,10 @@ impl Trajectory {
         let load = local.load(0.0);
         let slopes = local.slopes(load, &stage);
         let damping = local.acceleration(load, &stage).relaxation;
-        let relaxation = {
-            slopes[..demands.states]
-                .iter()
-                .map(|slope| slope.relaxation)
-        }
-        .fold(0.0, f64::max);
+        let relaxations = slopes[..demands.states]
+            .iter()
+            .map(|slope| slope.relaxation);
+        let relaxation = relaxations.fold(0.0, f64::max);
         let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
