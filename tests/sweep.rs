@@ -8,6 +8,8 @@ use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;
 use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 
 fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Scene {
     let mut scene = Scene::at_start();
@@ -114,6 +116,70 @@ fn neighbours_do_not_change_a_bit() {
             assert_eq!(alone.expect("followed"), among.expect("followed"));
         }
     }
+}
+
+/// Times of a motion at which its amplification of an error at the start is looked at.
+const SAMPLES: u32 = 16;
+
+/// Amplification beyond which a motion is chaotic or escapes.
+const MOST_AMPLIFIED: f64 = 1e4;
+
+/// Motions under a voltage near the one at which they escape, of actuators without surface elasticity: at
+/// most ten tolerances times K, by which the exact motion amplifies an error at its start.
+#[test]
+fn near_escape_errors_are_ten_tolerances_times_the_amplification() {
+    let mut runner = TestRunner::deterministic();
+    let mut draw = |range: std::ops::Range<f64>| {
+        let tree = range.new_tree(&mut runner).expect("a number");
+        tree.current()
+    };
+    let mut compared = 0;
+    for _ in 0..200 {
+        let scale = 10_f64.powf(draw(0.0..3.0));
+        let surface = [draw(0.0..0.02), draw(0.0..0.02), 0.0];
+        let frequency = 10_f64.powf(draw(-0.7..-0.3)) / scale;
+        let mut scene = alternating(surface, draw(0.34..0.42), frequency);
+        scene.parameters.aspect = 6.0 * scale * scale - 2.0;
+        scene.drive.prestress.set_value(draw(0.0..0.02));
+        scene.drive.voltage.set_value(draw(0.24..0.28));
+        let end = 200.0 * scale;
+        let exact = |scene: &Scene, end: f64| follow_one(scene, end, 1e-14).expect("followed");
+        let one = exact(&scene, end);
+        if one.collapse.is_some() {
+            continue;
+        }
+        let error = |one: &Outcome, other: &Outcome| {
+            let rate = scale * (one.state.rate - other.state.rate).abs();
+            let mut one = *one;
+            one.state.rate = other.state.rate;
+            difference(&one, other).max(rate)
+        };
+        let mut amplification = 1.0_f64;
+        for [position, rate] in [[1e-8, 0.0], [0.0, 1e-8 / scale]] {
+            let mut other = scene;
+            other.start.position += position;
+            other.start.rate += rate;
+            for sample in 1..=SAMPLES {
+                let time = end * f64::from(sample) / f64::from(SAMPLES);
+                let grown = error(&exact(&scene, time), &exact(&other, time)) / 1e-8;
+                amplification = amplification.max(grown);
+            }
+        }
+        if amplification > MOST_AMPLIFIED {
+            continue;
+        }
+        compared += 1;
+        for tolerance in [1e-4, 1e-6, 1e-9, 1e-12] {
+            let many = follow(&[scene], end, tolerance)[0].expect("followed");
+            let error = error(&one, &many) / amplification;
+            // Rounding of both.
+            assert!(
+                error <= 10.0 * tolerance + 1e-13,
+                "{scene:?} {tolerance}: {error}"
+            );
+        }
+    }
+    assert!(compared > 100, "{compared}");
 }
 
 #[test]

@@ -18,9 +18,9 @@ pub struct Ensemble {
     voltage: Row,
     prestress: Row,
     amplitude: Row,
-    /// Sine and cosine of ωt + ϑ.
-    angle: [Row; 2],
-    /// Sine and cosine of ω times the step.
+    /// Sine of ωt + ϑ, and by how much it grew in the last step.
+    sine: [Row; 2],
+    /// Sine of ωh of a step h, and 2 − 2 cos ωh.
     turn: [Row; 2],
 }
 
@@ -38,8 +38,8 @@ impl Ensemble {
             voltage: [0.0; LANES],
             prestress: [0.0; LANES],
             amplitude: [0.0; LANES],
-            angle: [[0.0; LANES], [1.0; LANES]],
-            turn: [[0.0; LANES], [1.0; LANES]],
+            sine: [[0.0; LANES]; 2],
+            turn: [[0.0; LANES]; 2],
         }
     }
 }
@@ -78,14 +78,16 @@ impl ensemble::Ensemble for Ensemble {
         self.voltage[lane] = voltage.value();
         self.prestress[lane] = prestress.value();
         self.amplitude[lane] = harmonic.amplitude;
-        let (sine, cosine) = (harmonic.frequency * step).sin_cos();
-        (self.turn[0][lane], self.turn[1][lane]) = (sine, cosine);
+        let (sine, cosine) = (0.5 * harmonic.frequency * step).sin_cos();
+        (self.turn[0][lane], self.turn[1][lane]) = (2.0 * sine * cosine, 4.0 * sine * sine);
         self.see_from(lane, motion, time);
     }
 
     fn see_from(&mut self, lane: usize, motion: &Motion, time: &DoubleDouble) {
         let (sine, cosine) = motion.drive.angle(*time).sin_cos();
-        (self.angle[0][lane], self.angle[1][lane]) = (sine, cosine);
+        let [by_cosine, by_sine] = self.turn.map(|row| row[lane]);
+        self.sine[0][lane] = sine;
+        self.sine[1][lane] = 0.5 * by_sine * sine + by_cosine * cosine;
     }
 
     #[inline(always)]
@@ -101,14 +103,14 @@ impl ensemble::Ensemble for Ensemble {
             voltage: load(&self.voltage),
             prestress: load(&self.prestress),
             amplitude: load(&self.amplitude),
-            angle: [load(&self.angle[0]), load(&self.angle[1])],
-            turn: [load(&self.turn[0]), load(&self.turn[1])],
+            sine: [load(&self.sine[0]), load(&self.sine[1])],
+            turn: load(&self.turn[1]),
         }
     }
 
     #[inline(always)]
     fn keep<S: Simd, V: Lanes<S, LANES>>(&mut self, packed: &Packed<V>) {
-        self.angle = [packed.angle[0].store(), packed.angle[1].store()];
+        self.sine = packed.sine.map(Lanes::store);
     }
 }
 
@@ -119,24 +121,23 @@ pub struct Packed<N> {
     voltage: N,
     prestress: N,
     amplitude: N,
-    angle: [N; 2],
-    turn: [N; 2],
+    sine: [N; 2],
+    turn: N,
 }
 
 impl<N: Number> ensemble::Packed<N> for Packed<N> {
+    /// By the second difference of the sine, which in the form of C. Reinsch (J. Stoer, R. Bulirsch,
+    /// "Introduction to Numerical Analysis", section 2.3.2) keeps the digits where ωh is small.
     #[inline(always)]
     fn turn(&mut self) {
-        let [sine, cosine] = self.angle;
-        let [by_sine, by_cosine] = self.turn;
-        self.angle = [
-            sine.mul_add(by_cosine, cosine * by_sine),
-            cosine * by_cosine - sine * by_sine,
-        ];
+        let [sine, growth] = self.sine;
+        let growth = growth - self.turn * sine;
+        self.sine = [sine + growth, growth];
     }
 
     #[inline(always)]
     fn acceleration(&self, position: N, rate: N) -> N {
-        let voltage = self.angle[0].mul_add(self.amplitude, self.voltage);
+        let voltage = self.sine[0].mul_add(self.amplitude, self.voltage);
         let load = Load {
             voltage_squared: voltage * voltage,
             prestress: self.prestress,

@@ -29,6 +29,10 @@ pub const BLOCK: usize = 32;
 /// By which factor (ωh)² may become larger than where the formula is stable.
 pub const STIFFER: f64 = 1.2;
 
+/// The largest correction of a position in a step, over the tolerance and the position. What is
+/// corrected is the method's error by one order less: the error that stays is far smaller.
+pub const CORRECTION: f64 = 0.02;
+
 /// Steps from one estimate of the error to the next.
 const ESTIMATED: usize = 4;
 
@@ -111,14 +115,6 @@ impl<const POINTS: usize> Formula<POINTS> {
         _ => 0.12,
     };
 
-    /// The largest correction of a position in a step, over the tolerance and the position. What is
-    /// corrected is the method's error by one order less: the error that stays is far smaller, the
-    /// less so the lower the order.
-    pub const CORRECTION: f64 = match POINTS {
-        ..=10 => 0.003,
-        _ => 0.01,
-    };
-
     const fn new() -> Formula<POINTS> {
         let mut factorial = 1;
         let mut i = 2;
@@ -172,9 +168,9 @@ pub struct LaneStates {
     pub inverse: Row,
     /// h²f at the places of the last steps, the oldest first; the block's own behind them.
     pub f: [Row; HISTORY + BLOCK],
-    /// Positions and rates at the ends of the block's steps.
+    /// x and hx' at the ends of the block's steps.
     pub positions: [Row; BLOCK],
-    pub rates: [Row; BLOCK],
+    pub ways: [Row; BLOCK],
     /// The limits of the position.
     pub limits: [Row; 2],
     /// The extremes before the block.
@@ -202,7 +198,7 @@ impl LaneStates {
         inverse: [0.0; LANES],
         f: [[0.0; LANES]; HISTORY + BLOCK],
         positions: [[1.0; LANES]; BLOCK],
-        rates: [[0.0; LANES]; BLOCK],
+        ways: [[0.0; LANES]; BLOCK],
         limits: [[0.0; LANES], [2.0; LANES]],
         extremes: [[1.0; LANES]; 2],
         range: [[1.0; LANES]; 2],
@@ -247,13 +243,12 @@ impl LaneStates {
             position = f.mul_add(fill(formula.twice[0]), (position + way) + twice);
             way = f.mul_add(fill(formula.once[0]), way + once);
             packed.turn();
-            let rate = way * inverse;
-            f = packed.acceleration(position, rate) * square;
+            f = packed.acceleration(position, way * inverse) * square;
             largest = largest.max(f.abs());
             range = [range[0].min(position), range[1].max(position)];
             self.f[HISTORY + i] = f.store();
             self.positions[i] = position.store();
-            self.rates[i] = rate.store();
+            self.ways[i] = way.store();
             if (i + 1) % ESTIMATED == 0 {
                 miss = Formula::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
                 worst = worst.max(miss.abs());

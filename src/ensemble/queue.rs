@@ -3,7 +3,7 @@
 
 use fearless_simd::Level;
 
-use super::multistep::{BLOCK, Formula, HISTORY, LaneStates, STIFFER};
+use super::multistep::{BLOCK, CORRECTION, Formula, HISTORY, LaneStates, STIFFER};
 use super::{Arrival, Ensemble, LANES, Member, history, turning_point};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
@@ -82,7 +82,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             start,
             end,
             tolerance,
-            correction: Formula::<POINTS>::CORRECTION * tolerance,
+            correction: CORRECTION * tolerance,
             next: 0,
             arrivals: vec![Ok(blank); motions.len()],
         }

@@ -44,23 +44,22 @@ const fn reciprocals(more: usize) -> [f64; POINTS] {
 /// The positions at which the motion of a lane turns in the block that has been taken, which
 /// began at `rate`.
 pub fn turns(motions: &LaneStates, lane: usize, rate: f64) -> impl Iterator<Item = f64> + '_ {
+    let first = motions.step[lane] * rate;
     (0..BLOCK).filter_map(move |i| {
         let before = if i == 0 {
-            rate
+            first
         } else {
-            motions.rates[i - 1][lane]
+            motions.ways[i - 1][lane]
         };
-        (before * motions.rates[i][lane] < 0.0).then(|| turn(motions, lane, i, before))
+        (before * motions.ways[i][lane] < 0.0).then(|| turn(motions, lane, i, before))
     })
 }
 
-/// The position at which the motion of a lane turns in step `i` of the block, which began at rate
+/// The position at which the motion of a lane turns in step `i` of the block, at whose begin hx' was
 /// `before`.
 fn turn(motions: &LaneStates, lane: usize, i: usize, before: f64) -> f64 {
-    // h²f, and hx' in the same units.
     let values: [f64; POINTS] = std::array::from_fn(|j| motions.f[i + HISTORY - j][lane]);
-    let (step, rate) = (motions.step[lane], motions.rates[i][lane]);
-    let way = step * rate;
+    let way = motions.ways[i][lane];
     let f = POWERS.each_ref().map(|row| {
         let terms = row.iter().zip(&values);
         terms.fold(0.0, |sum, (weight, value)| sum + weight * value)
@@ -72,7 +71,7 @@ fn turn(motions: &LaneStates, lane: usize, i: usize, before: f64) -> f64 {
         let terms = coefficients.iter().rev();
         terms.fold(0.0, |sum, term| sum * sigma + term)
     };
-    let mut sigma = rate / (before - rate);
+    let mut sigma = way / (before - way);
     for _ in 0..MOST_ITERATIONS {
         let change = (way + sigma * horner(&once, sigma)) / horner(&f, sigma);
         sigma -= change;
@@ -102,7 +101,7 @@ mod tests {
         let time = |i: usize| begin + (i + 1) as f64 * step;
         for i in 0..BLOCK {
             motions.positions[i] = [time(i).cos(); LANES];
-            motions.rates[i] = [-time(i).sin(); LANES];
+            motions.ways[i] = [-step * time(i).sin(); LANES];
         }
         for k in 0..HISTORY + BLOCK {
             let t = begin + (k as f64 - HISTORY as f64 + 1.0) * step;
