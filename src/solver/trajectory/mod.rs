@@ -28,6 +28,11 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
+/// By how much a step may be longer than the one before, where that was not refused at first: how long steps may
+/// be varies with the motion's phase. Where they grow as far as the last one allows, every second attempt is
+/// refused at a tolerance of 1e-6, every seventh at 1e-12; so it is one of 16 and of 26.
+const MOST_GROWTH: f64 = 1.05;
+
 /// So many endpoint-only steps take no longer than one with dense output.
 const PER_DENSE_STEP: f64 = 2.0;
 
@@ -192,7 +197,8 @@ impl Trajectory {
         if !steps.takes_endpoint_steps {
             return false;
         }
-        let many = || steps.endpoint.are_shorter_than(rest) && !self.may_repeat(equation);
+        let many =
+            || steps.endpoint.are_faster(rest, self.next_length) && !self.may_repeat(equation);
         if !self.restarts_at_every_step {
             many()
         } else if self.control.repeated().is_loose() {
@@ -420,11 +426,16 @@ impl Trajectory {
             };
             Ok((step, factor))
         })?;
+        let growth = match before {
+            _ if length < longest => 1.0,
+            Some(_) => MOST_GROWTH,
+            None => f64::INFINITY,
+        };
         // A step cut short says little about the next one.
         self.next_length = Some(if length == most {
             free
         } else {
-            length * factor
+            length * factor.min(growth)
         });
         Ok(step)
     }
