@@ -122,6 +122,16 @@ impl DoubleDouble {
         self.mul(DoubleDouble::new(factor))
     }
 
+    /// `self · factor` of a power of 2, of either sign: nothing is rounded.
+    #[must_use]
+    #[inline]
+    pub const fn scale_exactly(self, factor: f64) -> DoubleDouble {
+        DoubleDouble {
+            high: self.high * factor,
+            low: self.low * factor,
+        }
+    }
+
     /// The square root of a number above 0: that of `f64` and one step of Newton's method.
     #[must_use]
     pub fn sqrt(self) -> DoubleDouble {

@@ -20,7 +20,7 @@ impl Orbit {
         Orbit {
             first_turn,
             second_turn,
-            period: second_turn.sub(first_turn).scale(2.0),
+            period: second_turn.sub(first_turn).scale_exactly(2.0),
         }
     }
 
@@ -109,7 +109,7 @@ impl Orbit {
     #[must_use]
     pub fn run(&self, now: DoubleDouble, mut direction: f64, step: f64) -> (DoubleDouble, f64) {
         let rest = self.remainder(step);
-        let mut now = now.add(rest.scale(direction));
+        let mut now = now.add(rest.scale_exactly(direction));
         // Two reflections come back to the first direction; a third and fourth
         // happen where rounding left a little more than a period.
         for _ in 0..4 {
@@ -120,7 +120,7 @@ impl Orbit {
             } else {
                 break;
             };
-            now = turn.scale(2.0).sub(now);
+            now = turn.scale_exactly(2.0).sub(now);
             direction = -direction;
         }
         (now, direction)
