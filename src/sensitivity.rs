@@ -14,7 +14,7 @@ use crate::arithmetic::jet::Dual;
 use crate::nondimensional::scene::Scene;
 use crate::solver::dense_output::Segment;
 use crate::solver::limits::Limit;
-use crate::solver::linearized::{Linearized, Stages, offsets};
+use crate::solver::linearized::{Linearized, StageVector, offsets};
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, LocalEquation, State};
 
@@ -263,7 +263,9 @@ fn variation(
     let times = offsets(segment.length());
     let states = times.map(|offset| segment.state(offset));
     let along = |direction: &Scene, change: State| {
-        Stages::from_fn(|i, _| slope(scene, begin.plus(times[i]), states[i], direction, change))
+        StageVector::from_fn(|i, _| {
+            slope(scene, begin.plus(times[i]), states[i], direction, change)
+        })
     };
     let still = State {
         position: 0.0,

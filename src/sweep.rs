@@ -19,7 +19,7 @@ use fearless_simd::Level;
 
 use crate::actuator::Ensemble;
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::ensemble::{self, Arrival, Member};
+use crate::ensemble::{self, Arrival, InitialValueProblem};
 use crate::nondimensional::scene::Scene;
 use crate::solver::State;
 use crate::solver::extremes::Extremes;
@@ -49,7 +49,7 @@ pub struct Outcome {
 pub fn follow(scenes: &[Scene], end: f64, tolerance: f64) -> Vec<Result<Outcome, Failure>> {
     let motions: Vec<_> = scenes
         .iter()
-        .map(|scene| Member {
+        .map(|scene| InitialValueProblem {
             equation: scene.motion(),
             start: scene.start,
             limits: scene.limits,

@@ -2,7 +2,7 @@
 
 use dielectric_elastomer_actuator::actuator::Ensemble;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
-use dielectric_elastomer_actuator::ensemble::{self, Member};
+use dielectric_elastomer_actuator::ensemble::{self, InitialValueProblem};
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
@@ -88,7 +88,7 @@ fn scenes_of_all_kinds_come_out_in_their_order() {
 #[test]
 fn a_motion_next_to_rest_is_not_given_back() {
     let scene = alternating([0.0; 3], 1e-160, 0.1438);
-    let motion = Member {
+    let motion = InitialValueProblem {
         equation: scene.motion(),
         start: scene.start,
         limits: scene.limits,

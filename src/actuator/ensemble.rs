@@ -8,20 +8,20 @@ use super::motion::{self, Load, Motion};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::lanes::Lanes;
 use crate::arithmetic::number::Number;
-use crate::ensemble::{self, LANES, Row};
+use crate::ensemble::{self, LANES, PerLane};
 
 /// The equations of motion of as many actuators as there are lanes. Voltage and
 /// prestress are constant but for the built-in alternating voltage.
 #[derive(Clone, Copy, Debug)]
 pub struct Ensemble {
-    coefficients: Coefficients<Row>,
-    voltage: Row,
-    prestress: Row,
-    amplitude: Row,
+    coefficients: Coefficients<PerLane>,
+    voltage: PerLane,
+    prestress: PerLane,
+    amplitude: PerLane,
     /// Sine of ωt + ϑ, and by how much it grew in the last step.
-    sine: [Row; 2],
+    sine: [PerLane; 2],
     /// Sine of ωh of a step h, and 2 − 2 cos ωh.
-    turn: [Row; 2],
+    turn: [PerLane; 2],
 }
 
 impl Ensemble {
@@ -92,7 +92,7 @@ impl ensemble::Ensemble for Ensemble {
 
     #[inline(always)]
     fn pack<S: Simd, V: Lanes<S, LANES>>(&self, simd: S) -> Packed<V> {
-        let load = |row: &Row| V::load(simd, row);
+        let load = |numbers: &PerLane| V::load(simd, numbers);
         Packed {
             coefficients: Coefficients {
                 inertia: load(&self.coefficients.inertia),

@@ -30,8 +30,8 @@ use queue::Queue;
 /// Motions that are followed at once.
 pub const LANES: usize = 8;
 
-/// Numbers of all lanes.
-pub type Row = [f64; LANES];
+/// A number for each lane.
+pub type PerLane = [f64; LANES];
 
 /// From these tolerances on a method that looks back on fewer values takes longer steps.
 const LOOSE: f64 = 3e-8;
@@ -72,9 +72,9 @@ pub trait Packed<N: Number> {
     fn stiffness(&self, position: N) -> N;
 }
 
-/// A motion to be followed.
+/// A motion to be followed: an equation, a start and how far it may go.
 #[derive(Clone, Copy, Debug)]
-pub struct Member<E> {
+pub struct InitialValueProblem<E> {
     /// Its equation.
     pub equation: E,
     /// Its state at the start.
@@ -102,7 +102,7 @@ pub struct Arrival {
 pub fn follow<F: Ensemble>(
     level: Level,
     ensemble: &mut F,
-    motions: &[Member<F::Equation>],
+    motions: &[InitialValueProblem<F::Equation>],
     [start, end]: [DoubleDouble; 2],
     tolerance: f64,
 ) -> Vec<Result<Arrival, Failure>> {

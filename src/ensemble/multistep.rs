@@ -15,7 +15,7 @@
 
 use fearless_simd::Simd;
 
-use super::{LANES, Packed, Row};
+use super::{LANES, Packed, PerLane};
 use crate::arithmetic::lanes::Lanes;
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limits;
@@ -39,8 +39,8 @@ const ESTIMATED: usize = 4;
 /// The most values of f that a formula looks back on.
 const MOST_POINTS: usize = 11;
 
-/// The formula by the number of values of f that it looks back on.
-pub struct Formula<const POINTS: usize> {
+/// Falkner's formula by the number of values of f that it looks back on.
+pub struct Falkner<const POINTS: usize> {
     /// Weights of h²f for hx'.
     once: [f64; POINTS],
     /// Weights of h²f for x, beside x + hx'.
@@ -100,9 +100,9 @@ pub const fn own(points: usize, j: usize) -> i128 {
     value
 }
 
-impl<const POINTS: usize> Formula<POINTS> {
+impl<const POINTS: usize> Falkner<POINTS> {
     /// The formula, worked out by the compiler.
-    pub const WEIGHTS: Formula<POINTS> = Formula::new();
+    pub const WEIGHTS: Falkner<POINTS> = Falkner::new();
 
     /// The correction falls with the step like its power of this order.
     pub const FALL: f64 = (POINTS + 1) as f64;
@@ -115,7 +115,7 @@ impl<const POINTS: usize> Formula<POINTS> {
         _ => 0.12,
     };
 
-    const fn new() -> Formula<POINTS> {
+    const fn new() -> Falkner<POINTS> {
         let mut factorial = 1;
         let mut i = 2;
         while i < POINTS as i128 {
@@ -124,7 +124,7 @@ impl<const POINTS: usize> Formula<POINTS> {
         }
         // Of M = σ(σ+1)…/(POINTS − 1)!, by which the miss adds to the polynomial.
         let (miss_once, miss_twice) = integrals(product(POINTS - 1, POINTS), factorial);
-        let mut formula = Formula {
+        let mut formula = Falkner {
             once: [0.0; POINTS],
             twice: [0.0; POINTS],
             miss: [0.0; POINTS],
@@ -147,7 +147,7 @@ impl<const POINTS: usize> Formula<POINTS> {
 
     /// The miss by the values of h²f, the oldest first.
     #[inline(always)]
-    fn miss<S: Simd, V: Lanes<S, LANES>>(simd: S, f: &[Row]) -> V {
+    fn miss<S: Simd, V: Lanes<S, LANES>>(simd: S, f: &[PerLane]) -> V {
         let weights = &Self::WEIGHTS.miss;
         let mut sum = V::load(simd, &f[0]) * V::fill(simd, weights[POINTS - 1]);
         for j in (0..POINTS - 1).rev() {
@@ -160,33 +160,33 @@ impl<const POINTS: usize> Formula<POINTS> {
 /// The motions of all lanes, each with steps of its own length, and what a block of steps leaves.
 #[derive(Clone, Debug)]
 pub struct LaneStates {
-    pub position: Row,
-    pub rate: Row,
+    pub position: PerLane,
+    pub rate: PerLane,
     /// Length of a step h; 0 where the lane is free.
-    pub step: Row,
+    pub step: PerLane,
     /// 1/h; 0 where the lane is free.
-    pub inverse: Row,
+    pub inverse: PerLane,
     /// h²f at the places of the last steps, the oldest first; the block's own behind them.
-    pub f: [Row; HISTORY + BLOCK],
+    pub f: [PerLane; HISTORY + BLOCK],
     /// x and hx' at the ends of the block's steps.
-    pub positions: [Row; BLOCK],
-    pub ways: [Row; BLOCK],
+    pub positions: [PerLane; BLOCK],
+    pub ways: [PerLane; BLOCK],
     /// The limits of the position.
-    pub limits: [Row; 2],
+    pub limits: [PerLane; 2],
     /// The extremes before the block.
-    pub extremes: [Row; 2],
+    pub extremes: [PerLane; 2],
     /// The range that holds the motion in the block: between the ends of two steps it goes beyond
     /// both by less than |f| h²/8.
-    pub range: [Row; 2],
+    pub range: [PerLane; 2],
     /// The largest correction of a position by the miss, over what is allowed.
-    pub correction: Row,
+    pub correction: PerLane,
     /// (ωh)² at the block's end over that up to which the method is stable, or more.
-    pub stiffness: Row,
+    pub stiffness: PerLane,
     /// The largest of each since they were set to 0.
-    pub largest: [Row; 2],
+    pub largest: [PerLane; 2],
     /// Negative or NaN where a lane has to be looked at: the step is too long, or the motion may have
     /// come to a limit or beyond its extremes.
-    pub margin: Row,
+    pub margin: PerLane,
 }
 
 impl LaneStates {
@@ -216,14 +216,14 @@ impl LaneStates {
         packed: &mut P,
         allowed: f64,
     ) {
-        let formula = &Formula::<POINTS>::WEIGHTS;
+        let formula = &Falkner::<POINTS>::WEIGHTS;
         let fill = |value: f64| V::fill(simd, value);
-        let load = |row: &Row| V::load(simd, row);
+        let load = |numbers: &PerLane| V::load(simd, numbers);
         let step = load(&self.step);
         let inverse = load(&self.inverse);
         let square = step * step;
         let begin = load(&self.position);
-        let miss: V = Formula::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
+        let miss: V = Falkner::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
         // Those predicted, x and hx'.
         let mut position = begin - miss * fill(formula.miss_twice);
         let mut way = load(&self.rate) * step - miss * fill(formula.miss_once);
@@ -250,7 +250,7 @@ impl LaneStates {
             self.positions[i] = position.store();
             self.ways[i] = way.store();
             if (i + 1) % ESTIMATED == 0 {
-                miss = Formula::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
+                miss = Falkner::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
                 worst = worst.max(miss.abs());
             }
         }
@@ -262,7 +262,7 @@ impl LaneStates {
         let [low, high] = [range[0] - beyond, range[1] + beyond];
         self.range = [low.store(), high.store()];
         let correction = worst * fill(formula.miss_twice / allowed) / begin.abs();
-        let angle = Formula::<POINTS>::STABLE;
+        let angle = Falkner::<POINTS>::STABLE;
         let stiffness = packed.stiffness(position) * square * fill(1.0 / (angle * angle));
         self.correction = correction.store();
         self.stiffness = stiffness.store();
@@ -338,9 +338,9 @@ mod tests {
     /// integrated exactly, the correction included.
     #[test]
     fn the_weights_are_those_of_the_interpolation() {
-        let formula = &Formula::<11>::WEIGHTS;
+        let formula = &Falkner::<11>::WEIGHTS;
         assert!((formula.once.iter().sum::<f64>() - 1.0).abs() < 1e-12);
-        assert_eq!(Formula::<10>::WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
+        assert_eq!(Falkner::<10>::WEIGHTS.once[0], 30_277_247.0 / 7_257_600.0);
         for degree in 0..11 {
             let f = |sigma: f64| sigma.powi(degree);
             let at = |weights: &[f64; 11]| -> f64 {

@@ -3,8 +3,8 @@
 
 use fearless_simd::Level;
 
-use super::multistep::{BLOCK, CORRECTION, Formula, HISTORY, LaneStates, STIFFER};
-use super::{Arrival, Ensemble, LANES, Member, history, turning_point};
+use super::multistep::{BLOCK, CORRECTION, Falkner, HISTORY, LaneStates, STIFFER};
+use super::{Arrival, Ensemble, InitialValueProblem, LANES, history, turning_point};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
 use crate::solver::trajectory::{Failure, Progress, Trajectory};
@@ -49,7 +49,7 @@ struct Lane {
 /// The members that wait, and what all lanes have in common.
 pub struct Queue<'a, const POINTS: usize, E> {
     level: Level,
-    motions: &'a [Member<E>],
+    motions: &'a [InitialValueProblem<E>],
     start: DoubleDouble,
     end: DoubleDouble,
     tolerance: f64,
@@ -64,7 +64,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
     /// Motions that are to be followed from the start to the end of the span.
     pub fn new(
         level: Level,
-        motions: &'a [Member<E>],
+        motions: &'a [InitialValueProblem<E>],
         [start, end]: [DoubleDouble; 2],
         tolerance: f64,
     ) -> Queue<'a, POINTS, E> {
@@ -130,7 +130,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         packed: &mut LaneStates,
         index: usize,
     ) -> Option<Lane> {
-        while let Some(&Member {
+        while let Some(&InitialValueProblem {
             ref equation,
             start,
             limits,
@@ -168,15 +168,15 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         index: usize,
         state: State,
     ) -> bool {
-        let &Member {
+        let &InitialValueProblem {
             ref equation,
             limits,
             ..
         } = &self.motions[lane.motion];
         let frequency = equation.seen_from(&self.start).natural_frequency(state);
         // As long as the method is stable; at a tight tolerance less, by experience.
-        let by_error = (self.tolerance / 1e-7).powf(1.0 / Formula::<POINTS>::FALL);
-        let free = Formula::<POINTS>::STABLE / frequency * by_error.min(1.0);
+        let by_error = (self.tolerance / 1e-7).powf(1.0 / Falkner::<POINTS>::FALL);
+        let free = Falkner::<POINTS>::STABLE / frequency * by_error.min(1.0);
         let rest = self.end.since(lane.time);
         let looked_back = (POINTS - 1) as f64;
         let blocks = ((rest / free - looked_back) / BLOCK as f64).ceil();
@@ -292,7 +292,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             lane.time = after(lane, lane.passed - 1);
             lane.passed = 0;
             let by_error = if ratio.is_finite() {
-                (0.8 * ratio.max(1.0).powf(-1.0 / Formula::<POINTS>::FALL)).clamp(0.3, 0.8)
+                (0.8 * ratio.max(1.0).powf(-1.0 / Falkner::<POINTS>::FALL)).clamp(0.3, 0.8)
             } else {
                 0.3
             };
@@ -339,7 +339,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         let [ratio, stiffness] = packed.largest_since(index);
         let stable = stable_step(stiffness);
         if ratio < IDLE_CORRECTION && 1.4 * step < stable {
-            let growth = (0.85 * ratio.max(1e-30).powf(-1.0 / Formula::<POINTS>::FALL)).min(2.0);
+            let growth = (0.85 * ratio.max(1e-30).powf(-1.0 / Falkner::<POINTS>::FALL)).min(2.0);
             let longer = (growth * step).min(0.95 * stable);
             let history = [HISTORY + BLOCK - 1, known + BLOCK];
             return self.change(lane, ensemble, packed, index, history, longer)
@@ -353,7 +353,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
     /// Follows the rest of a motion from `state` on alone, and notes where it came to. Returns
     /// false: the lane is free.
     fn go_alone(&mut self, lane: &Lane, mut extremes: Extremes, state: State) -> bool {
-        let &Member {
+        let &InitialValueProblem {
             ref equation,
             limits,
             ..

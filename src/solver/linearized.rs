@@ -19,7 +19,7 @@ use super::tables::product::product;
 pub const NODES: usize = 2 * PAIRS;
 
 /// A number at each stage.
-pub type Stages = SVector<f64, NODES>;
+pub type StageVector = SVector<f64, NODES>;
 
 /// The times of the stages, counted from the begin of a substep of this length.
 #[must_use]
@@ -30,15 +30,15 @@ pub fn offsets(length: f64) -> [f64; NODES] {
 /// The linear equation over one substep, ready to be solved for any start and any g.
 pub struct Linearized {
     half: f64,
-    by_position: Stages,
-    by_rate: Stages,
+    by_position: StageVector,
+    by_rate: StageVector,
     system: LU<f64, Const<NODES>, Const<NODES>>,
 }
 
 impl Linearized {
     /// The equation with a and b given at the stages of a substep of this length.
     #[must_use]
-    pub fn new(length: f64, by_position: Stages, by_rate: Stages) -> Linearized {
+    pub fn new(length: f64, by_position: StageVector, by_rate: StageVector) -> Linearized {
         let half = 0.5 * length;
         let system = SMatrix::<f64, NODES, NODES>::from_fn(|row, column| {
             let [once, twice] = [GAUSS_16.once[column][row], GAUSS_16.twice[column][row]];
@@ -56,9 +56,9 @@ impl Linearized {
     /// y from `start` on, with g given at the stages; nothing where the stages have no
     /// unique solution.
     #[must_use]
-    pub fn solve(&self, start: State, g: Stages) -> Option<Segment> {
+    pub fn solve(&self, start: State, g: StageVector) -> Option<Segment> {
         let times = offsets(2.0 * self.half);
-        let free = Stages::from_fn(|i, _| {
+        let free = StageVector::from_fn(|i, _| {
             let drift = start.position + times[i] * start.rate;
             self.by_position[i] * drift + self.by_rate[i] * start.rate + g[i]
         });
@@ -88,8 +88,9 @@ mod tests {
     #[test]
     fn a_forced_and_driven_oscillator_is_solved_to_rounding() {
         let length = 1.3;
-        let g = Stages::from_fn(|i, _| offsets(length)[i].cos());
-        let linearized = Linearized::new(length, Stages::repeat(-1.0), Stages::repeat(0.5));
+        let g = StageVector::from_fn(|i, _| offsets(length)[i].cos());
+        let linearized =
+            Linearized::new(length, StageVector::repeat(-1.0), StageVector::repeat(0.5));
         let start = State {
             position: 0.7,
             rate: -0.4,

@@ -9,7 +9,7 @@ use crate::arithmetic::legendre;
 pub(super) const TERMS: usize = 16;
 
 /// The Legendre coefficients of a slope over a step.
-pub(super) type Coefficients = [f64; TERMS];
+pub(super) type LegendreCoefficients = [f64; TERMS];
 
 /// Everything but the motion, over one step, u = t/half − 1 ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -18,9 +18,9 @@ pub(super) struct Polynomials {
     pub start: FullState,
     pub end: FullState,
     /// z' of each state.
-    pub slopes: [Coefficients; MOST_STATES],
+    pub slopes: [LegendreCoefficients; MOST_STATES],
     /// The derivative of each integral.
-    pub powers: [Coefficients; MOST_INTEGRALS],
+    pub powers: [LegendreCoefficients; MOST_INTEGRALS],
 }
 
 impl Polynomials {
@@ -51,7 +51,7 @@ impl Polynomials {
 }
 
 /// Σ a_k ∫P_k from −1 to u, with ∫P_k = (P_{k+1} − P_{k−1})/(2k+1).
-fn integrated(coefficients: &Coefficients, u: f64) -> f64 {
+fn integrated(coefficients: &LegendreCoefficients, u: f64) -> f64 {
     if coefficients.iter().all(|a| *a == 0.0) {
         return 0.0;
     }

@@ -3,7 +3,7 @@
 use fearless_simd::Simd;
 
 use super::nodes::Nodes;
-use super::polynomials::{Coefficients, TERMS};
+use super::polynomials::{LegendreCoefficients, TERMS};
 use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
 use crate::solver::tables::{Columns, Rule};
@@ -36,7 +36,7 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
         rule: &Rule<N>,
         half: f64,
         before: f64,
-        series: &Coefficients,
+        series: &LegendreCoefficients,
     ) -> Self {
         let fill = |value: f64| Nodes::fill(simd, value);
         let place: Nodes<S, R> = Nodes::load(simd, &rule.place);
@@ -74,14 +74,14 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
 
     /// The Legendre coefficients of the slopes.
     #[inline(always)]
-    pub fn series(&self, rule: &Rule<N>) -> Coefficients {
+    pub fn series(&self, rule: &Rule<N>) -> LegendreCoefficients {
         series(rule, &self.slopes)
     }
 }
 
 /// The Legendre coefficients of numbers at the nodes.
 #[inline(always)]
-pub(super) fn series<const N: usize>(rule: &Rule<N>, values: &[f64; N]) -> Coefficients {
+pub(super) fn series<const N: usize>(rule: &Rule<N>, values: &[f64; N]) -> LegendreCoefficients {
     let mut all = [0.0; TERMS];
     for (column, value) in rule.series.iter().zip(values) {
         for (term, share) in all.iter_mut().zip(column) {

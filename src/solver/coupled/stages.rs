@@ -15,7 +15,7 @@ use fearless_simd::{Level, Simd, dispatch};
 
 use super::newton::Newton;
 use super::nodes::Nodes;
-use super::polynomials::{Coefficients, TERMS};
+use super::polynomials::{LegendreCoefficients, TERMS};
 use super::stage_values::{StageValues, series};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
@@ -45,9 +45,9 @@ pub(super) struct Slopes {
     /// Half the length of the step.
     pub half: f64,
     /// x''.
-    pub motion: Coefficients,
+    pub motion: LegendreCoefficients,
     /// z'.
-    pub internal: [Coefficients; MOST_STATES],
+    pub internal: [LegendreCoefficients; MOST_STATES],
 }
 
 /// What a step is asked for.
@@ -77,7 +77,7 @@ pub(super) struct Step {
     /// The slopes over it.
     pub series: Slopes,
     /// The derivatives of the integrals.
-    pub powers: [Coefficients; MOST_INTEGRALS],
+    pub powers: [LegendreCoefficients; MOST_INTEGRALS],
     /// Number of nodes.
     pub nodes: usize,
     /// Whether they are Radau nodes.
@@ -113,7 +113,7 @@ impl Step {
         error
     }
 
-    fn neglected(&self, series: &Coefficients) -> f64 {
+    fn neglected(&self, series: &LegendreCoefficients) -> f64 {
         let n = self.nodes;
         let last = series[n - 1].abs() + series[n - 2].abs();
         let before = series[n - 3].abs() + series[n - 4].abs();
@@ -334,7 +334,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             }
         }
     }
-    let powers: [Coefficients; MOST_INTEGRALS] = std::array::from_fn(|k| {
+    let powers: [LegendreCoefficients; MOST_INTEGRALS] = std::array::from_fn(|k| {
         if k < integrals {
             series(rule, &powers[k])
         } else {

@@ -2,7 +2,7 @@
 
 use super::{Carried, MOST_WORK, Trajectory};
 use crate::arithmetic::legendre;
-use crate::solver::coupled::polynomials::{Coefficients, Polynomials};
+use crate::solver::coupled::polynomials::{LegendreCoefficients, Polynomials};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
 use crate::solver::integrator::{Method, Present};
@@ -63,7 +63,7 @@ impl Trajectory {
 
 /// The Legendre coefficients of x'' over a step, degree by degree, times the square of half its
 /// length.
-pub(super) fn by_degree(segment: &Segment) -> Coefficients {
+pub(super) fn by_degree(segment: &Segment) -> LegendreCoefficients {
     let series = segment.series();
     std::array::from_fn(|k| {
         let half = if k % 2 == 0 {
@@ -108,7 +108,7 @@ fn leads(polynomials: &Polynomials, motion: &Trajectory) -> bool {
         size.is_finite() && (end - start - gain).abs() <= VALIDATION_TOLERANCE * size
     };
     let (start, end) = (&polynomials.start, &polynomials.end);
-    let ends = |start: &[f64], end: &[f64], slopes: &[Coefficients]| {
+    let ends = |start: &[f64], end: &[f64], slopes: &[LegendreCoefficients]| {
         let ends = start.iter().zip(end);
         { ends.zip(slopes) }.all(|((start, end), slopes)| leads(*start, *end, slopes))
     };
