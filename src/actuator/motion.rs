@@ -30,10 +30,8 @@ pub struct Load<N> {
 /// for it. Multiplied by λ⁷ it needs a single division:
 ///
 /// ```text
-/// λ'' = [6λ'² + λ² + S λ⁷ − λ⁸ (linear + (cubic − φ²) λ² + quintic λ⁴)] / (c λ⁷ + 2λ)
+/// λ'' = {6λ'² + λ² + λ⁴ [S λ³ − λ⁴ (linear + (cubic − φ²) λ² + quintic λ⁴)]} / (c λ⁷ + 2λ)
 /// ```
-///
-/// The powers are arranged so that few operations depend on one another.
 #[inline(always)]
 pub fn acceleration<N: Number>(
     coefficients: &Coefficients<N>,
@@ -41,18 +39,36 @@ pub fn acceleration<N: Number>(
     stretch: N,
     rate: N,
 ) -> N {
+    let [numerator, inverse] = numerator_and_inverse(coefficients, load, stretch, rate);
+    numerator * inverse
+}
+
+/// The numerator of [`acceleration`], and the inverse of its denominator.
+///
+/// The powers are arranged so that the division, which takes the longest, waits for as few operations as
+/// possible; the numerator is there before it ends.
+#[inline(always)]
+fn numerator_and_inverse<N: Number>(
+    coefficients: &Coefficients<N>,
+    load: Load<N>,
+    stretch: N,
+    rate: N,
+) -> [N; 2] {
+    let Coefficients {
+        inertia,
+        linear,
+        cubic,
+        quintic,
+    } = *coefficients;
     let square = stretch * stretch;
     let fourth = square * square;
-    let seventh = (stretch * square) * fourth;
-    let cubic = coefficients.cubic - load.voltage_squared;
-    let lower = cubic.mul_add(square, coefficients.linear);
-    let elastic = fourth.mul_add(coefficients.quintic, lower);
-    let driven = seventh.mul_add(
-        load.prestress,
-        (rate * rate).mul_add(rate.same(6.0), square),
-    );
-    let inertia = seventh.mul_add(coefficients.inertia, stretch + stretch);
-    (driven - (fourth * fourth) * elastic) / inertia
+    let third = (inertia * stretch) * square;
+    let inverse = stretch.same(1.0) / third.mul_add(fourth, stretch + stretch);
+    let lower = (cubic - load.voltage_squared).mul_add(square, linear);
+    let elastic = fourth.mul_add(quintic, lower);
+    let force = (stretch * square) * load.prestress - fourth * elastic;
+    let free = (rate * rate).mul_add(stretch.same(6.0), square);
+    [fourth.mul_add(force, free), inverse]
 }
 
 /// The Hamiltonian 𝓗 of Eq. 18, nondimensional as in Eq. 19 and 0 for the
@@ -154,6 +170,13 @@ impl LocalEquation for LocalMotion<'_> {
     #[inline(always)]
     fn acceleration<N: Number>(&self, load: Load<N>, position: N, rate: N) -> N {
         acceleration(&self.coefficients.same(position), load, position, rate)
+    }
+
+    #[inline(always)]
+    fn acceleration_and<N: Number>(&self, load: Load<N>, position: N, rate: N, addend: N) -> N {
+        let coefficients = self.coefficients.same(position);
+        let [numerator, inverse] = numerator_and_inverse(&coefficients, load, position, rate);
+        numerator.mul_add(inverse, addend)
     }
 
     /// That of φ² under the alternating voltage.

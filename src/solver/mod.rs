@@ -110,6 +110,18 @@ pub trait LocalEquation {
     /// x'' under this load.
     fn acceleration<N: Number>(&self, load: Self::Load<N>, position: N, rate: N) -> N;
 
+    /// x'' + `addend`, for which a last multiplication may have room.
+    #[inline(always)]
+    fn acceleration_and<N: Number>(
+        &self,
+        load: Self::Load<N>,
+        position: N,
+        rate: N,
+        addend: N,
+    ) -> N {
+        self.acceleration(load, position, rate) + addend
+    }
+
     /// The fastest angular frequency with which the load alternates, 0 where it does not.
     fn load_frequency(&self) -> f64;
 

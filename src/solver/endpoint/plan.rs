@@ -31,8 +31,10 @@ pub const NODES: usize = 8;
 /// A number at each node, in two registers.
 pub type Pair<S> = [f64x4<S>; 2];
 
-/// What equal steps have in common. Numbers at the nodes are in the order of the table.
+/// What equal steps have in common. Numbers at the nodes are in the order of the table. No register of
+/// them lies across two lines of the cache.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Plan {
     /// Half their length.
     pub half: f64,
@@ -223,8 +225,10 @@ impl Plan {
     /// the position by `moved`.
     #[inline(always)]
     pub fn ahead<S: Simd>(&self, simd: S, g: Pair<S>, moved: f64) -> Pair<S> {
-        let shift = f64x4::splat(simd, self.slope * moved);
-        multiply(simd, &TABLE.ahead, &both_permuted(g), [shift; 2])
+        // The shift comes late and is added last.
+        let none = [f64x4::splat(simd, 0.0); 2];
+        let same = multiply(simd, &TABLE.ahead, &both_permuted(g), none);
+        shifted(same, self.slope * moved)
     }
 
     /// g at the end.
@@ -288,18 +292,15 @@ impl Plan {
     pub fn end<S: Simd>(&self, simd: S, g: Pair<S>, rate: f64) -> [f64; 4] {
         let g = unpair(g);
         let Matrices { end, end_drift, .. } = &self.matrices;
-        let mut even = load(simd, end_drift) * rate;
-        let mut odd = load(simd, &end[1]) * g[1];
-        for j in 0..NODES / 2 {
-            let value = f64x4::splat(simd, g[2 * j]);
-            even = load(simd, &end[2 * j]).mul_add(value, even);
-            if j > 0 {
-                let value = f64x4::splat(simd, g[2 * j + 1]);
-                odd = load(simd, &end[2 * j + 1]).mul_add(value, odd);
-            }
+        // Four chains, as above.
+        let mut sums = [f64x4::splat(simd, 0.0); 4];
+        sums[0] = load(simd, end_drift) * rate;
+        for j in 0..NODES {
+            let value = f64x4::splat(simd, g[j]);
+            sums[j % 4] = load(simd, &end[j]).mul_add(value, sums[j % 4]);
         }
         let mut ends = [0.0; 4];
-        (even + odd).store_slice(&mut ends);
+        ((sums[0] + sums[1]) + (sums[2] + sums[3])).store_slice(&mut ends);
         ends
     }
 }

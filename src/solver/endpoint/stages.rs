@@ -1,10 +1,11 @@
 //! The stages of one step, iterated on a plan.
 
+use std::hint::black_box;
+
 use fearless_simd::{Simd, SimdBase, f64x4};
 
-use super::plan::{Pair, Plan, largest};
+use super::plan::{Pair, Plan, largest, shifted};
 use crate::arithmetic::lanes::Lanes;
-use crate::arithmetic::number::Number;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::{LocalEquation, State};
 
@@ -38,20 +39,24 @@ pub fn solve<S: Simd, L: LocalEquation>(
     planned: u32,
     tolerance: IterationTolerance,
 ) -> Result<Stages<S>, Diverged> {
-    let free = plan.free(simd, state.rate);
-    let start = f64x4::splat(simd, state.position);
+    let [drift, gain] = plan.free(simd, state.rate);
+    let free = [shifted(drift, state.position), gain];
     let slope = f64x4::splat(simd, -plan.slope);
     // g moves the end by no more than this.
     let reach = 2.0 * plan.half * plan.half;
     let [mut g, mut last] = [guess; 2];
     let mut iterations = 0;
     loop {
-        let [displacement, rate] = plan.stages(simd, g, free);
+        // Or its matrices would be copied to the stack before the loop: they are more than registers.
+        let plan = black_box(plan);
+        let [position, rate] = plan.stages(simd, g, free);
+        // What the position is rounded by is in both parts of g, which makes up for most of it.
+        let displacement = shifted(position, -state.position);
         let before_last = last;
         last = g;
         for k in 0..2 {
-            let f = local.acceleration(loads[k], start + displacement[k], rate[k]);
-            g[k] = displacement[k].mul_add(slope, f);
+            let linear = displacement[k] * slope;
+            g[k] = local.acceleration_and(loads[k], position[k], rate[k], linear);
         }
         iterations += 1;
         // What follows would be waited for.

@@ -13,6 +13,7 @@ pub type Diagonals = [Eight; 8];
 
 /// What leads from g at the nodes, and from the rate at the begin, to the motion over a step.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
 pub struct Matrices {
     /// The displacement x − x_0 at the nodes, from g and from x'_0.
     pub twice: Diagonals,
