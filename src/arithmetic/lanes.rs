@@ -1,9 +1,23 @@
 //! SIMD registers as numbers: one lane for each node.
 
+use std::hint::black_box;
+
 use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4, f64x8};
 
 use super::number::Number;
 use super::sine;
+
+/// The length of a loop that stays one where registers hold two numbers: there it takes so many instructions
+/// that, unrolled, it would be larger and no faster. The compiler does not see the length, and would check an
+/// index that is not taken modulo the true one.
+#[inline(always)]
+pub fn rolled<S: Simd>(length: usize) -> usize {
+    if <S::f64s as SimdBase<S>>::LEN == 2 {
+        black_box(length)
+    } else {
+        length
+    }
+}
 
 /// P numbers that are computed together.
 pub trait Lanes<S: Simd, const P: usize>: Number {

@@ -1,18 +1,36 @@
 //! Sums of Legendre polynomials.
 
+use std::hint::black_box;
+
 use super::number::Number;
 
-/// Σ a_k P_k(u) over the degrees k below `terms`, by C. W. Clenshaw's summation (Math. Comp. 9 (1955)
-/// 118–120).
+/// The most terms of a sum.
+pub const MOST_TERMS: usize = 17;
+
+/// For each degree k what Clenshaw's recurrence takes from the two sums before: (2k + 1)/(k + 1), times u, of
+/// the last one, and −(k + 1)/(k + 2) of the other.
+static RECURRENCE: [[f64; 2]; MOST_TERMS] = {
+    let mut factors = [[0.0; 2]; MOST_TERMS];
+    let mut degree = 0;
+    while degree < MOST_TERMS {
+        let k = degree as f64;
+        factors[degree] = [(2.0 * k + 1.0) / (k + 1.0), -(k + 1.0) / (k + 2.0)];
+        degree += 1;
+    }
+    factors
+};
+
+/// Σ a_k P_k(u) over the degrees k below `terms`, which are [`MOST_TERMS`] at most, by C. W. Clenshaw's
+/// summation (Math. Comp. 9 (1955) 118–120).
 #[inline(always)]
 pub fn sum<N: Number>(u: N, terms: usize, coefficient: impl Fn(usize) -> N) -> N {
     let number = |value: f64| u.same(value);
     let (mut next, mut after) = (number(0.0), number(0.0));
-    for degree in (0..terms).rev() {
-        let k = degree as f64;
-        let rise = u * number((2.0 * k + 1.0) / (k + 1.0));
-        let fall = number(-(k + 1.0) / (k + 2.0));
-        let sum = rise.mul_add(next, after.mul_add(fall, coefficient(degree)));
+    // Unrolled it would be large and no faster: each sum waits for the one before.
+    for degree in (0..black_box(terms).min(MOST_TERMS)).rev() {
+        let [rise, fall] = RECURRENCE[degree];
+        let other = after.mul_add(number(fall), coefficient(degree));
+        let sum = (u * number(rise)).mul_add(next, other);
         (next, after) = (sum, next);
     }
     next

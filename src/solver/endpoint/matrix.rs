@@ -1,14 +1,11 @@
-//! Products and inverses of matrices over the nodes.
-
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
+//! Products and inverses of matrices over the nodes, by loops: iterators and closures are functions of their own, which
+//! are not compiled for the SIMD level.
 
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{NODES, Pair, pair, scaled, unpair};
 use super::table::Diagonals;
+use crate::arithmetic::lanes::rolled;
 use crate::arithmetic::number::Number;
 
 /// A matrix by rows.
@@ -18,18 +15,21 @@ pub type Matrix = [[f64; NODES]; NODES];
 #[inline(always)]
 pub fn quotient<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
     let [mut left, mut right] = [*matrix; 2];
-    for i in 0..NODES {
+    for i in 0..rolled::<S>(NODES) {
+        let i = i % NODES;
         left[i] = unpair(scaled(pair(simd, &left[i]), -z));
         left[i][i] += 1.0;
     }
-    for p in 0..NODES {
+    for p in 0..rolled::<S>(NODES) {
+        let p = p % NODES;
         let pivot = 1.0 / left[p][p];
         let own = [
             scaled(pair(simd, &left[p]), pivot),
             scaled(pair(simd, &right[p]), pivot),
         ];
         [left[p], right[p]] = [unpair(own[0]), unpair(own[1])];
-        for r in 0..NODES {
+        for r in 0..rolled::<S>(NODES) {
+            let r = r % NODES;
             if r != p {
                 let factor = f64x4::splat(simd, -left[r][p]);
                 left[r] = unpair(added(pair(simd, &left[r]), factor, own[0]));
@@ -59,9 +59,11 @@ pub fn sum<S: Simd>(
     right: &Matrix,
 ) -> Matrix {
     let mut rows = *matrix;
-    for i in 0..NODES {
+    for i in 0..rolled::<S>(NODES) {
+        let i = i % NODES;
         let mut row = pair(simd, &rows[i]);
-        for k in 0..NODES {
+        for k in 0..rolled::<S>(NODES) {
+            let k = k % NODES;
             let factor = f64x4::splat(simd, factor * left[i][k]);
             row = added(row, factor, pair(simd, &right[k]));
         }
@@ -71,7 +73,7 @@ pub fn sum<S: Simd>(
 }
 
 /// The matrix by rows.
-#[inline(always)]
+#[inline(never)]
 pub fn rows(diagonals: &Diagonals) -> Matrix {
     let mut rows = [[0.0; NODES]; NODES];
     for i in 0..NODES {
@@ -83,7 +85,7 @@ pub fn rows(diagonals: &Diagonals) -> Matrix {
 }
 
 /// The matrix by diagonals.
-#[inline(always)]
+#[inline(never)]
 pub fn diagonals(matrix: &Matrix) -> Diagonals {
     let mut diagonals = [[[0.0; 4]; 2]; NODES];
     for i in 0..NODES {

@@ -1,9 +1,9 @@
 //! ∂f/∂x of late, from which a plan takes its slope.
 
-use fearless_simd::{Simd, SimdBase, f64x4};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::plan::Pair;
+use super::plan::{NODES, pair};
 use crate::arithmetic::lanes::Lanes;
 use crate::solver::LocalEquation;
 
@@ -38,18 +38,23 @@ impl MeanSlope {
             && (0.0..=AVERAGED).contains(&self.states)
     }
 
-    /// Takes these positions under this load too.
-    #[inline(always)]
-    pub fn include<S: Simd, L: LocalEquation>(
+    /// Takes these positions too, at the origin of time, where the alternating part of the load has this
+    /// sine; in a function of its own, since it is long and not hot.
+    #[inline(never)]
+    pub fn include<L: LocalEquation>(
         &mut self,
-        simd: S,
+        level: Level,
         local: &L,
-        load: L::Load<f64x4<S>>,
+        sine: f64,
         rate: f64,
-        [low, high]: Pair<S>,
+        positions: &[f64; NODES],
     ) {
-        let slope = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
-        let slope = Lanes::<S, 4>::store(slope).iter().sum::<f64>() * 0.125;
+        let slope = dispatch!(level, simd => {
+            let load = local.load_with_sine(f64x4::splat(simd, 0.0), f64x4::splat(simd, sine));
+            let [low, high] = pair(simd, positions);
+            let sum = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
+            Lanes::<_, 4>::store(sum).iter().sum::<f64>() * 0.125
+        });
         self.states = (self.states + 1.0).min(AVERAGED);
         if self.states > 1.0 {
             let off = (slope - self.value).abs();

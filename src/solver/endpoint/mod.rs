@@ -217,7 +217,7 @@ impl EndpointSteps {
         let product = if square < SLOPE_OFF * time_scale * time_scale {
             0.0
         } else {
-            self.product(simd, &local, load, way.state, half, count)
+            self.product(simd, &local, phase[0], way.state, half, count)
         };
         // Made anew after a state was restored.
         let plan = self.plan.get_or_insert_default();
@@ -345,10 +345,9 @@ impl EndpointSteps {
                 if let Some([_, angle]) = local.harmonic() {
                     phase = sine_and_cosine(simd, angle);
                 }
-                let load = local.load_with_sine(splat(0.0), splat(phase[0]));
-                let positions = shifted(displacement, state.position - moved);
+                let positions = unpair(shifted(displacement, state.position - moved));
                 self.slope
-                    .include(simd, &local, load, state.rate, positions);
+                    .include(simd.level(), &local, phase[0], state.rate, &positions);
             } else if alternates {
                 phase = plan.turned(phase);
             }
@@ -386,7 +385,7 @@ impl EndpointSteps {
         &mut self,
         simd: S,
         local: &L,
-        load: L::Load<f64x4<S>>,
+        sine: f64,
         state: State,
         half: f64,
         count: f64,
@@ -402,7 +401,8 @@ impl EndpointSteps {
                 ),
                 None => [f64x4::splat(simd, state.position); 2],
             };
-            self.slope.include(simd, local, load, state.rate, positions);
+            self.slope
+                .include(simd.level(), local, sine, state.rate, &unpair(positions));
         }
         let wanted = (half * half * self.slope.value).clamp(-STEEPEST, 0.0);
         let spreads = if of_this_length {

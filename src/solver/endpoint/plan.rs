@@ -21,7 +21,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::matrix::{diagonals, quotient, rows, sum};
 use super::table::{Dense, Diagonals, Matrices, TABLE};
-use crate::arithmetic::lanes::Lanes;
+use crate::arithmetic::lanes::{Lanes, rolled};
 use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
 
@@ -176,7 +176,8 @@ impl Plan {
         let from = if slopes { &self.unscaled } else { &TABLE.plain };
         let square = half * half;
         let to = &mut self.matrices;
-        for x in 0..NODES {
+        for x in 0..rolled::<S>(NODES) {
+            let x = x % NODES;
             for register in 0..2 {
                 (load(simd, &from.twice[x][register]) * square)
                     .store_slice(&mut to.twice[x][register]);
@@ -184,7 +185,8 @@ impl Plan {
             }
         }
         let by_values = load(simd, &[square, half, square, square]);
-        for j in 0..NODES {
+        for j in 0..rolled::<S>(NODES) {
+            let j = j % NODES;
             (load(simd, &from.end[j]) * by_values).store_slice(&mut to.end[j]);
         }
         let by_rate = load(simd, &[half, 1.0, half, half]);
@@ -243,7 +245,8 @@ impl Plan {
     #[inline(always)]
     pub fn resampled<S: Simd>(&self, simd: S, g: &[f64; NODES], before: f64) -> Pair<S> {
         let mut series = [f64x4::splat(simd, 0.0); 2];
-        for j in 0..NODES {
+        for j in 0..rolled::<S>(NODES) {
+            let j = j % NODES;
             let value = f64x4::splat(simd, g[j]);
             let [low, high] = pair(simd, &TABLE.series[j]);
             series = [
@@ -325,17 +328,19 @@ fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
     let from = |values| pair(simd, values);
     matrices.drift = unpair(multiply(simd, &matrices.twice, &places, from(&plain.drift)));
     matrices.gain = unpair(multiply(simd, &matrices.once, &places, from(&plain.gain)));
-    let mut end = [f64x4::splat(simd, 0.0); NODES];
+    let mut own = [f64x4::splat(simd, 0.0); NODES];
     let mut end_drift = load(simd, &plain.end_drift);
     for k in 0..NODES {
-        let own = load(simd, &plain.end[k]) * slope;
-        end_drift = own.mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
-        for j in 0..NODES {
-            end[j] = own.mul_add(f64x4::splat(simd, twice[k][j]), end[j]);
-        }
+        own[k] = load(simd, &plain.end[k]) * slope;
+        end_drift = own[k].mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
     }
-    for j in 0..NODES {
-        (end[j] + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
+    for j in 0..rolled::<S>(NODES) {
+        let j = j % NODES;
+        let mut end = f64x4::splat(simd, 0.0);
+        for k in 0..NODES {
+            end = own[k].mul_add(f64x4::splat(simd, twice[k][j]), end);
+        }
+        (end + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
     }
     end_drift.store_slice(&mut matrices.end_drift);
 }
