@@ -122,6 +122,8 @@ pub fn link(
                 .arg(script)
                 .args(["-Wl,--undefined-version", "-Wl,-z,defs"]);
             linker.args(["-s", "-Wl,--gc-sections", "-Wl,--build-id=none"]);
+            // glibc and musl have read this table of symbols for long, the older one need not be there too.
+            linker.arg("-Wl,--hash-style=gnu");
             // Nothing refers to the exported functions; this takes them out of the archive.
             linker.args(names.iter().map(|name| format!("-Wl,-u,{name}")));
         }

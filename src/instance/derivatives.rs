@@ -211,11 +211,9 @@ fn check_derivative(name: &str, value: f64) -> Result<(), Fault> {
     if value.abs() <= LARGEST_DERIVATIVE {
         return Ok(());
     }
-    let number = Shortest(value);
+    let [number, largest] = [value, LARGEST_DERIVATIVE].map(Shortest);
     Err(Fault::error(if value.is_finite() {
-        format!(
-            "the derivative {number} of {name} is not between -{LARGEST_DERIVATIVE:e} and {LARGEST_DERIVATIVE:e}"
-        )
+        format!("the derivative {number} of {name} is not between -{largest} and {largest}")
     } else {
         format!("the derivative {number} of {name} is not a finite number")
     }))

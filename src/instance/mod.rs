@@ -187,11 +187,14 @@ impl<M: Model> Instance<M> {
         };
         // Derivatives of inputs that are set before count from the start time.
         M::begin_inputs(&mut self.scene, DoubleDouble::new(start_time));
-        Ok((kept != wanted).then(|| Event {
-            warning: true,
-            text: format!(
-                "the tolerance {wanted:e} is outside {smallest:e} to {largest:e}; {kept:e} is used"
-            ),
+        Ok((kept != wanted).then(|| {
+            let [wanted, smallest, largest, kept] = [wanted, smallest, largest, kept].map(Shortest);
+            Event {
+                warning: true,
+                text: format!(
+                    "the tolerance {wanted} is outside {smallest} to {largest}; {kept} is used"
+                ),
+            }
         }))
     }
 
@@ -263,9 +266,9 @@ fn check_time(what: &str, time: f64) -> Result<(), Fault> {
     if time.abs() <= largest {
         return Ok(());
     }
-    let number = Shortest(time);
+    let [number, largest] = [time, largest].map(Shortest);
     Err(Fault::error(if time.is_finite() {
-        format!("the {what} {number} is not between -{largest:e} and {largest:e}")
+        format!("the {what} {number} is not between -{largest} and {largest}")
     } else {
         format!("the {what} {number} is not a finite number")
     }))

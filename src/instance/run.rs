@@ -336,10 +336,10 @@ fn follow_clock<M: Model>(
 
 #[cold]
 fn not_a_step(step: f64) -> Fault {
-    let [shortest, longest] = STEP_RANGE;
+    let [shortest, longest] = STEP_RANGE.map(Shortest);
     let number = Shortest(step);
     Fault::error(if step > 0.0 && step.is_finite() {
-        format!("the communication step {number} is not between {shortest:e} and {longest:e}")
+        format!("the communication step {number} is not between {shortest} and {longest}")
     } else {
         format!("the communication step {number} is not a finite number above 0")
     })

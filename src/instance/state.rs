@@ -19,6 +19,9 @@ use crate::model::variables::Access;
 /// Grows with each change of what the bytes mean.
 pub const LAYOUT: u16 = 13;
 
+/// Room that is made for a first save, which is enlarged where it does not suffice.
+const LEAST_ROOM: usize = 1024;
+
 /// A saved instance, whose numbers fit together: it was saved by this process, or its bytes were
 /// checked.
 #[derive(Debug, Default, PartialEq)]
@@ -41,10 +44,18 @@ impl<M: Model> Instance<M> {
     /// Error where the memory does not suffice.
     pub fn save(&self, before: Saved) -> Result<Saved, Fault> {
         let mut bytes = before.bytes;
-        bytes.clear();
-        match postcard::to_extend(self, bytes) {
-            Ok(bytes) => Ok(Saved { bytes }),
-            Err(error) => Err(Fault::error(format!("the state cannot be saved: {error}"))),
+        bytes.resize(bytes.capacity().max(LEAST_ROOM), 0);
+        loop {
+            match postcard::to_slice(self, &mut bytes).map(|used| used.len()) {
+                Ok(length) => {
+                    bytes.truncate(length);
+                    return Ok(Saved { bytes });
+                }
+                Err(postcard::Error::SerializeBufferFull) => bytes.resize(2 * bytes.len(), 0),
+                Err(error) => {
+                    return Err(Fault::error(format!("the state cannot be saved: {error}")));
+                }
+            }
         }
     }
 

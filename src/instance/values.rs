@@ -372,10 +372,10 @@ fn cannot_be_worked_out<M: Model>(view: &View<M>, references: &[u32]) -> Fault {
     Fault::discard(match M::check_state(view) {
         Err(why) => format!("{why}; try a shorter step"),
         Ok(()) => format!(
-            "{name} cannot be worked out at {}: it leads beyond the largest number, {:e}; try a shorter \
+            "{name} cannot be worked out at {}: it leads beyond the largest number, {}; try a shorter \
              step, or parameters nearer to their typical sizes",
             view.state_in_words(),
-            f64::MAX
+            Shortest(f64::MAX)
         ),
     })
 }
@@ -401,7 +401,8 @@ fn check_state<M: Model>(variable: &Variable<M>, value: f64) -> Result<(), Fault
     }
     let name = variable.name;
     Err(Fault::error(format!(
-        "{name} = {value} is not a finite number"
+        "{name} = {} is not a finite number",
+        Shortest(value)
     )))
 }
 

@@ -57,7 +57,7 @@ impl Recording {
     /// A host may step beyond the limits before it handles the event there.
     fn include_position(&mut self, limits: Limits, position: f64) {
         if let Some(extremes) = &mut self.extremes {
-            extremes.include(position.clamp(limits.lower, limits.upper));
+            extremes.include(limits.nearest(position));
         }
     }
 }

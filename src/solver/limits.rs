@@ -33,6 +33,19 @@ impl Limits {
         self.lower < self.upper && self.lower.is_finite() && self.upper.is_finite()
     }
 
+    /// The position between the limits that is the nearest to this one. `f64::clamp` would bring along what
+    /// prints its numbers in a panic.
+    #[must_use]
+    pub fn nearest(&self, position: f64) -> f64 {
+        if position < self.lower {
+            self.lower
+        } else if position > self.upper {
+            self.upper
+        } else {
+            position
+        }
+    }
+
     /// The limit that lies less than `tolerance`, relative to it, before a state that moves towards
     /// it, or behind the state.
     #[must_use]

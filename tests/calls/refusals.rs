@@ -156,7 +156,7 @@ fn a_tolerance_out_of_range_is_moved_with_a_warning() {
     assert_eq!(setup(1e-30), WARNING);
     assert!(
         host.last_line()
-            .contains("1e-30 is outside 1e-14 to 1e-2; 1e-14 is used"),
+            .contains("1e-30 is outside 1e-14 to 0.01; 1e-14 is used"),
         "{}",
         host.last_line()
     );
