@@ -28,10 +28,10 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
-/// By how much a step may be longer than the one before, where that was not refused at first, if that had not
-/// grown, and by how much more if it had: how long steps may be varies with the motion's phase, by a few percent
-/// from step to step or, where the motion turns far out, by powers of ten. Where they grow as far as the last one
-/// allows, every second attempt is refused at a tolerance of 1e-6, every seventh at 1e-12.
+/// By how much a step may be longer than the one before; and by how much more, where that had grown itself. A step that
+/// was refused at first does not let the next one grow. How long steps may be varies with the motion's phase: by a few
+/// percent from step to step, or by powers of ten where the motion turns far out. Where a step grows as far as the
+/// last one allows, every second attempt is refused at a tolerance of 1e-6, every seventh at 1e-12.
 const MOST_GROWTH: f64 = 1.05;
 
 /// So many endpoint-only steps take no longer than one with dense output.
