@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 13;
+pub const LAYOUT: u16 = 14;
 
 /// Room that is made for a first save, which is enlarged where it does not suffice.
 const LEAST_ROOM: usize = 1024;

@@ -91,22 +91,22 @@ fn a_forged_motion_is_not_valid() {
         forged
     };
     for (stored, place, more) in [
-        (&plain, "/start/position", 1e-9),
+        (&plain, "/start/state/position", 1e-9),
         (&plain, "/history/1/begin/high", 1e-9),
         (&plain, "/history/1/segment/start/rate", 1e-12),
         (&plain, "/history/1/segment/end/position", 1e-12),
         (&plain, "/history/0/segment/even/0", 1e-3),
         (&plain, "/history/0/segment/odd/0", 1e-3),
-        (&plain, "/now/high", 1e3),
-        (&plain, "/now/low", 1e3),
-        (&plain, "/index", 1.0),
-        (&plain, "/time_left", 1e-3),
+        (&plain, "/cursor/now/high", 1e3),
+        (&plain, "/cursor/now/low", 1e3),
+        (&plain, "/cursor/step", 1.0),
+        (&plain, "/cursor/time_left", 1e-3),
         (&plain, "/mode/Periodic/direction", 0.5),
-        (&plain, "/advances", -1.0),
-        (&plain, "/limits/upper", -9.5),
+        (&plain, "/restarts/advances", -1.0),
+        (&plain, "/settings/limits/upper", -9.5),
         (&plain, "/mode/Periodic/orbit/period/high", 1e-9),
-        (&recording, "/extremes/lowest", 1.0),
-        (&recording, "/extremes/highest", 10.0),
+        (&recording, "/recording/extremes/lowest", 1.0),
+        (&recording, "/recording/extremes/highest", 10.0),
     ] {
         let forged = forged(stored, place, more);
         assert!(!valid(forged), "{place} in {stored:#}");

@@ -1,7 +1,7 @@
 //! What the motion meets on its way: limits at which it stops, turning points between which it
 //! repeats, extremes that are recorded.
 
-use super::{Integrator, Method, Mode};
+use super::{Integrator, Method, Mode, Recording};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::roots::crossing;
 use crate::solver::extremes::Extremes;
@@ -12,21 +12,21 @@ use crate::solver::position_origin::PositionOrigin;
 impl<M: Method> Integrator<M> {
     /// Moves the present to `target`, which lies in one of the steps.
     pub(in crate::solver) fn arrive(&mut self, target: DoubleDouble) {
-        self.now = target;
+        self.cursor.now = target;
         if self.history.is_empty() {
             // Not even the first step could be solved.
             return;
         }
-        self.index = self.history.find(target, self.index);
-        if self.extremes.is_some() {
+        self.cursor.step = self.history.find(target, self.cursor.step);
+        if self.recording.is_some() {
             self.record(target);
         }
-        let step = &mut self.history.steps_mut()[self.index];
+        let step = &mut self.history.steps_mut()[self.cursor.step];
         let offset = target.since(step.begin);
         let ahead = step.segment.length() - offset;
-        self.time_left = 0.0;
+        self.cursor.time_left = 0.0;
         // Where extremes are recorded every step is looked at.
-        if ahead == 0.0 || self.extremes.is_some() {
+        if ahead == 0.0 || self.recording.is_some() {
             return;
         }
         step.segment.expand();
@@ -43,14 +43,14 @@ impl<M: Method> Integrator<M> {
             Mode::AtRest => 0.0,
         };
         // Less than all of it, since it is counted down with rounding.
-        self.time_left = room * (1.0 - 1e-9);
+        self.cursor.time_left = room * (1.0 - 1e-9);
     }
 
     /// Moves the present along an orbit by the time `step`.
     pub(super) fn run_orbit(&mut self, orbit: Orbit, direction: f64, step: f64) {
-        let (now, next_direction) = orbit.run(self.now, direction, step);
-        if self.extremes.is_some() {
-            for turn in orbit.turns_within(self.now, direction, step) {
+        let (now, next_direction) = orbit.run(self.cursor.now, direction, step);
+        if self.recording.is_some() {
+            for turn in orbit.turns_within(self.cursor.now, direction, step) {
                 self.arrive(turn);
             }
         }
@@ -64,19 +64,20 @@ impl<M: Method> Integrator<M> {
     /// Records the extremes of the motion up to `target`. Not inlined: seldom called, and from several places.
     #[inline(never)]
     fn record(&mut self, target: DoubleDouble) {
-        self.history.steps_mut()[self.index].segment.expand();
-        let Some(mut extremes) = self.extremes else {
+        self.history.steps_mut()[self.cursor.step].segment.expand();
+        let position = self.position();
+        let Some(Recording { extremes, until }) = &mut self.recording else {
             return;
         };
         // Along an orbit the motion turns where the orbit does only.
-        let along_orbit = |orbit: Orbit| orbit.second_turn().since(self.recorded_until) <= 0.0;
+        let along_orbit = |orbit: Orbit| orbit.second_turn().since(*until) <= 0.0;
         if !self.mode.orbit().is_some_and(along_orbit) {
-            let first = self.history.find(self.recorded_until, 0);
+            let first = self.history.find(*until, 0);
             // Not before the first one, whatever a forged state says.
             let last = self.history.find(target, first).max(first);
             for step in &mut self.history.steps_mut()[first..=last] {
                 step.segment.expand();
-                let from = self.recorded_until.since(step.begin).max(0.0);
+                let from = until.since(step.begin).max(0.0);
                 let to = target.since(step.begin).min(step.segment.length());
                 let known =
                     step.origin.relative(extremes.lowest)..=step.origin.relative(extremes.highest);
@@ -84,34 +85,34 @@ impl<M: Method> Integrator<M> {
                     extremes.include(step.origin.absolute(turn));
                 }
             }
-            self.recorded_until = target;
+            *until = target;
         }
-        extremes.include(self.position());
-        self.extremes = Some(extremes);
+        extremes.include(position);
     }
 
     /// Records the extremes of the motion from now on.
     #[must_use]
     pub fn recording_extremes(mut self) -> Self {
-        self.extremes = Some(Extremes::at(self.position()));
+        self.record_extremes_anew(true);
         self
     }
 
     /// Forgets the extremes so far: they are recorded from the present on, or not any more.
     pub fn record_extremes_anew(&mut self, recording: bool) {
-        self.extremes = recording.then(|| Extremes::at(self.position()));
         // Along an orbit the motion turns where the orbit does only.
-        self.recorded_until = match self.mode.orbit() {
-            Some(orbit) => orbit.second_turn(),
-            None => self.now,
-        };
-        self.time_left = 0.0;
+        let orbit = self.mode.orbit();
+        let until = orbit.map_or(self.cursor.now, |orbit| orbit.second_turn());
+        self.recording = recording.then(|| Recording {
+            extremes: Extremes::at(self.position()),
+            until,
+        });
+        self.cursor.time_left = 0.0;
     }
 
     /// The extremes up to the present, where they are recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
-        self.extremes
+        self.recording.map(|recording| recording.extremes)
     }
 
     /// Notes a turning point of the last step, if nothing stops there; the second one closes an
@@ -153,7 +154,7 @@ impl<M: Method> Integrator<M> {
         lowest: f64,
         highest: f64,
     ) -> Option<(Limit, f64)> {
-        let limits = self.limits;
+        let limits = self.settings.limits;
         let step = self.history.steps_mut().last_mut()?;
         let limits = Limits {
             lower: step.origin.relative(limits.lower),

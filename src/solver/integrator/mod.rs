@@ -15,14 +15,17 @@ use super::State;
 use super::dense_output::{History, KeptStep, Segment};
 use super::extremes::Extremes;
 use super::limits::Limits;
-use super::orbit::Orbit;
 use super::outcome::{Failure, Progress};
 use super::position_origin::PositionOrigin;
 use super::step_control::StepControl;
 use crate::arithmetic::double_double::DoubleDouble;
 
 mod events;
+mod mode;
 mod validation;
+
+pub use mode::Mode;
+pub use validation::is_length;
 
 /// What rounding may leave of a step that has been made.
 const LAST_BITS: f64 = 1e-18;
@@ -41,51 +44,6 @@ pub trait Method: Clone + Debug + Serialize + DeserializeOwned {
     fn is_valid(&self, integrator: &Integrator<Self>) -> bool;
 }
 
-/// How a motion goes on from its start, as far as it is known.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub enum Mode<L> {
-    /// By steps, one after another.
-    Dense {
-        /// The first turning point, where an orbit is looked for.
-        first_turn: Option<DoubleDouble>,
-        /// The first event, and its time.
-        stop: Option<(L, DoubleDouble)>,
-    },
-    /// There and back between two turning points for ever: no further step is integrated.
-    Periodic {
-        /// The turning points.
-        orbit: Orbit,
-        /// −1 on the way back, else 1.
-        direction: f64,
-    },
-    /// Not at all.
-    AtRest,
-}
-
-impl<L> Mode<L> {
-    /// Nothing is known.
-    pub const UNKNOWN: Mode<L> = Mode::Dense {
-        first_turn: None,
-        stop: None,
-    };
-
-    /// The sign of the time's direction along the kept steps.
-    #[inline(always)]
-    fn direction(&self) -> f64 {
-        match self {
-            Mode::Periodic { direction, .. } => *direction,
-            Mode::Dense { .. } | Mode::AtRest => 1.0,
-        }
-    }
-
-    fn orbit(&self) -> Option<Orbit> {
-        match self {
-            Mode::Periodic { orbit, .. } => Some(*orbit),
-            Mode::Dense { .. } | Mode::AtRest => None,
-        }
-    }
-}
-
 /// Where the present lies.
 pub enum Present<'a, O> {
     /// At the start.
@@ -96,41 +54,77 @@ pub enum Present<'a, O> {
     End(&'a KeptStep<O>),
 }
 
+/// How a motion is followed.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Settings {
+    #[serde(skip, default = "Level::new")]
+    pub level: Level,
+    pub control: StepControl,
+    pub limits: Limits,
+}
+
+/// Where the kept steps begin.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Start<O> {
+    /// The origin of time; of no meaning where no step is kept.
+    pub time: DoubleDouble,
+    /// The origin of the position.
+    pub origin: O,
+    /// The state there, its position counted from that origin.
+    pub state: State,
+}
+
+/// Where the present lies in the kept steps.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Cursor {
+    /// The step that holds it.
+    pub step: usize,
+    /// The present, counted from the origin of time; on an orbit folded into it.
+    pub now: DoubleDouble,
+    /// For less time than this the present stays in its step and meets nothing.
+    pub time_left: f64,
+}
+
+impl Cursor {
+    const START: Cursor = Cursor {
+        step: 0,
+        now: DoubleDouble::ZERO,
+        time_left: 0.0,
+    };
+}
+
+/// How often the equation changes.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Restarts {
+    /// Advances since the last restart.
+    pub advances: u32,
+    /// The last start was good for a single advance: the host changes the equation at each
+    /// communication point, and a longer step would be thrown away.
+    pub at_every_step: bool,
+}
+
+/// How far the motion has swung.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Recording {
+    extremes: Extremes,
+    /// Up to this time, counted from the origin of time.
+    until: DoubleDouble,
+}
+
 /// A motion that is followed forward in time. It can be stored, and goes on bit for bit on
 /// processors of the same SIMD level; check what was stored with [`Integrator::is_valid`] where it
 /// may have been tampered with.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(bound = "M: Method")]
 pub struct Integrator<M: Method> {
-    #[serde(skip, default = "Level::new")]
-    pub(super) level: Level,
-    pub(super) control: StepControl,
-    pub(super) limits: Limits,
-    /// Time at the start; of no meaning where no step is kept.
-    pub(super) time_origin: DoubleDouble,
-    /// State at the origin of time, its position counted from the origin of the position.
-    pub(super) start: State,
-    pub(super) position_origin: M::Origin,
+    pub(super) settings: Settings,
+    pub(super) start: Start<M::Origin>,
     /// From the start on.
     pub(super) history: History<M::Origin>,
-    /// The step in which the present lies.
-    pub(super) index: usize,
-    /// The present, counted from the origin of time; on an orbit folded into it.
-    pub(super) now: DoubleDouble,
-    /// For less time than this the present stays in its step and meets nothing.
-    pub(super) time_left: f64,
+    pub(super) cursor: Cursor,
     pub(super) mode: Mode<M::Event>,
-    /// Length of the next step with dense output.
-    pub(super) next_length: Option<f64>,
-    /// Advances since the last restart.
-    pub(super) advances: u32,
-    /// The last start was good for a single advance: the host changes the equation at each
-    /// communication point, and a longer step would be thrown away.
-    pub(super) restarts_at_every_step: bool,
-    /// How far the motion has swung, where that is recorded.
-    extremes: Option<Extremes>,
-    /// The time up to which it is, counted from the origin of time.
-    recorded_until: DoubleDouble,
+    pub(super) restarts: Restarts,
+    recording: Option<Recording>,
     pub(super) method: M,
 }
 
@@ -144,22 +138,24 @@ impl<M: Method> Integrator<M> {
         tolerance: f64,
     ) -> Self {
         Integrator {
-            level: Level::new(),
-            control: StepControl::new(tolerance),
-            limits,
-            time_origin: DoubleDouble::ZERO,
-            start,
-            position_origin: M::Origin::ZERO,
+            settings: Settings {
+                level: Level::new(),
+                control: StepControl::new(tolerance),
+                limits,
+            },
+            start: Start {
+                time: DoubleDouble::ZERO,
+                origin: M::Origin::ZERO,
+                state: start,
+            },
             history,
-            index: 0,
-            now: DoubleDouble::ZERO,
-            time_left: 0.0,
+            cursor: Cursor::START,
             mode: Mode::UNKNOWN,
-            next_length: None,
-            advances: 0,
-            restarts_at_every_step: false,
-            extremes: None,
-            recorded_until: DoubleDouble::ZERO,
+            restarts: Restarts {
+                advances: 0,
+                at_every_step: false,
+            },
+            recording: None,
             method,
         }
     }
@@ -167,7 +163,7 @@ impl<M: Method> Integrator<M> {
     /// Computes the motion with this set of processor instructions.
     #[must_use]
     pub fn with_level(mut self, level: Level) -> Self {
-        self.level = level;
+        self.settings.level = level;
         self
     }
 
@@ -182,7 +178,7 @@ impl<M: Method> Integrator<M> {
     #[must_use]
     pub fn position_from_origin(&self) -> (M::Origin, f64) {
         match self.present() {
-            Present::Start => (self.position_origin, self.start.position),
+            Present::Start => (self.start.origin, self.start.state.position),
             Present::Inside(step, offset) => (step.origin, step.segment.position(offset)),
             Present::End(step) => (step.origin, step.segment.end().position),
         }
@@ -193,7 +189,7 @@ impl<M: Method> Integrator<M> {
     pub fn rate(&self) -> f64 {
         self.mode.direction()
             * match self.present() {
-                Present::Start => self.start.rate,
+                Present::Start => self.start.state.rate,
                 Present::Inside(step, offset) => step.segment.rate(offset),
                 Present::End(step) => step.segment.end().rate,
             }
@@ -209,11 +205,11 @@ impl<M: Method> Integrator<M> {
     }
 
     pub(super) fn present(&self) -> Present<'_, M::Origin> {
-        if self.history.is_empty() || self.now == DoubleDouble::ZERO {
+        if self.history.is_empty() || self.cursor.now == DoubleDouble::ZERO {
             return Present::Start;
         }
-        let step = &self.history.steps()[self.index];
-        let offset = self.now.since(step.begin);
+        let step = &self.history.steps()[self.cursor.step];
+        let offset = self.cursor.now.since(step.begin);
         if offset == step.segment.length() {
             Present::End(step)
         } else {
@@ -222,28 +218,28 @@ impl<M: Method> Integrator<M> {
     }
 
     pub(super) fn records_extremes(&self) -> bool {
-        self.extremes.is_some()
+        self.recording.is_some()
     }
 
     /// Starts anew from the present position and rate.
     #[inline(always)]
     pub(super) fn start_from_present(&mut self) {
-        self.restarts_at_every_step = self.advances == 1;
-        self.advances = 0;
+        self.restarts.at_every_step = self.restarts.advances == 1;
+        self.restarts.advances = 0;
         // Without a step it stands at its start.
         if !self.history.is_empty() {
             let rate = self.rate();
             let (origin, position) = self.position_from_origin();
-            self.start = State { position, rate };
-            self.position_origin = origin;
+            self.start.state = State { position, rate };
+            self.start.origin = origin;
         }
         self.forget();
     }
 
     /// Forgets the motion so far, which has come to `state` at `time`.
     pub(super) fn stand_at(&mut self, time: DoubleDouble, state: State) {
-        self.start = state;
-        self.time_origin = time;
+        self.start.state = state;
+        self.start.time = time;
         self.forget();
     }
 
@@ -251,21 +247,21 @@ impl<M: Method> Integrator<M> {
     #[inline(always)]
     fn forget(&mut self) {
         self.history.clear();
-        self.index = 0;
-        self.now = DoubleDouble::ZERO;
-        self.recorded_until = DoubleDouble::ZERO;
-        self.time_left = 0.0;
+        self.cursor = Cursor::START;
         self.mode = Mode::UNKNOWN;
+        if let Some(recording) = &mut self.recording {
+            recording.until = DoubleDouble::ZERO;
+        }
     }
 
     /// Follows the motion for the time `step` where it stays in its step and meets nothing; tells
     /// whether it does. The clock is then to be moved by as much.
     #[inline(always)]
     pub(crate) fn advance_inside_step(&mut self, step: f64) -> bool {
-        self.advances = self.advances.saturating_add(1);
-        if step < self.time_left {
-            self.time_left -= step;
-            self.now = self.now.plus(self.mode.direction() * step);
+        self.restarts.advances = self.restarts.advances.saturating_add(1);
+        if step < self.cursor.time_left {
+            self.cursor.time_left -= step;
+            self.cursor.now = self.cursor.now.plus(self.mode.direction() * step);
             return true;
         }
         false
@@ -303,10 +299,10 @@ impl<M: Method> Integrator<M> {
         mut further: impl FnMut(&mut Self, DoubleDouble, &mut u32) -> Result<DoubleDouble, f64>,
     ) -> Result<Progress<M::Event>, Failure> {
         if self.history.is_empty() {
-            self.time_origin = *clock;
+            self.start.time = *clock;
         }
-        if self.advances > 1 {
-            self.restarts_at_every_step = false;
+        if self.restarts.advances > 1 {
+            self.restarts.at_every_step = false;
         }
         match self.mode {
             Mode::Dense { .. } => {}
@@ -316,7 +312,7 @@ impl<M: Method> Integrator<M> {
             }
             Mode::AtRest => return Ok(Progress::Whole),
         }
-        let mut target = self.now.plus(step);
+        let mut target = self.cursor.now.plus(step);
         let mut budget = M::MOST_STEPS;
         loop {
             if let Mode::Dense {
@@ -390,16 +386,18 @@ impl<M: Method> Integrator<M> {
                 self.arrive(begin);
             }
             shift = begin;
-            self.time_origin = self.time_origin.add(begin);
-            self.now = self.now.sub(begin);
-            self.recorded_until = self.recorded_until.sub(begin);
-            self.index = 0;
+            self.start.time = self.start.time.add(begin);
+            self.cursor.now = self.cursor.now.sub(begin);
+            self.cursor.step = 0;
+            if let Some(recording) = &mut self.recording {
+                recording.until = recording.until.sub(begin);
+            }
             self.history.clear();
             self.mode = Mode::UNKNOWN;
         }
         if self.history.is_empty() {
-            self.start = segment.start();
-            self.position_origin = origin;
+            self.start.state = segment.start();
+            self.start.origin = origin;
         }
         self.history.push(KeptStep {
             begin: begin.sub(shift),

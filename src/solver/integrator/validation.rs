@@ -19,27 +19,25 @@ impl<M: Method> Integrator<M> {
             time.is_finite() && time.since(DoubleDouble::ZERO) >= 0.0 && time.since(end) <= 0.0
         };
         let in_step = |time: &DoubleDouble| {
-            inside(time) && self.history.find(*time, self.index) == self.index
+            inside(time) && self.history.find(*time, self.cursor.step) == self.cursor.step
         };
         let first = self.history.steps().first();
-        let length = self.next_length.unwrap_or(1.0);
         let latest = self.latest_unseen();
-        self.control.is_valid()
-            && self.limits.are_valid()
-            && self.time_origin.is_finite()
-            && self.position_origin.is_finite()
-            && self.start.position.is_finite()
-            && self.start.rate.is_finite()
+        self.settings.control.is_valid()
+            && self.settings.limits.are_valid()
+            && self.start.time.is_finite()
+            && self.start.origin.is_finite()
+            && self.start.state.position.is_finite()
+            && self.start.state.rate.is_finite()
             && first.is_none_or(|step| {
-                step.segment.begins_in(self.start) && step.origin == self.position_origin
+                step.segment.begins_in(self.start.state) && step.origin == self.start.origin
             })
             // No step outlives a restart: a short step, which may come first then, looks at none.
-            && (first.is_none() || self.advances > 0)
-            && self.index < self.history.steps().len().max(1)
-            && (0.0..=end.value()).contains(&self.time_left)
-            && [self.now, latest].iter().all(in_step)
-            && self.recorded_until.is_finite()
-            && (self.extremes.is_none() || inside(&self.recorded_until))
+            && (first.is_none() || self.restarts.advances > 0)
+            && self.cursor.step < self.history.steps().len().max(1)
+            && (0.0..=end.value()).contains(&self.cursor.time_left)
+            && [self.cursor.now, latest].iter().all(in_step)
+            && (self.recording.iter()).all(|recording| inside(&recording.until))
             && match &self.mode {
                 Mode::Dense { first_turn, stop } => {
                     first_turn.iter().all(inside)
@@ -48,10 +46,8 @@ impl<M: Method> Integrator<M> {
                 Mode::Periodic { orbit, direction } => {
                     direction.abs() == 1.0 && self.follows(orbit)
                 }
-                Mode::AtRest => first.is_none() && self.start.rate == 0.0,
+                Mode::AtRest => first.is_none() && self.start.state.rate == 0.0,
             }
-            && length > 0.0
-            && length.is_finite()
             && self.is_between_limits()
             && self.method.is_valid(self)
     }
@@ -59,14 +55,15 @@ impl<M: Method> Integrator<M> {
     /// Whether it is followed between these limits, with this tolerance.
     #[must_use]
     pub fn keeps_to(&self, limits: Limits, tolerance: f64) -> bool {
-        self.limits == limits && self.control.tolerance == tolerance
+        self.settings.limits == limits && self.settings.control.tolerance == tolerance
     }
 
     /// Where the present comes to at the latest before it is looked where it is, but for rounding:
     /// the time left is counted down step by step.
     fn latest_unseen(&self) -> DoubleDouble {
-        let left = (self.time_left - VALIDATION_TOLERANCE * self.history.end().value()).max(0.0);
-        self.now.plus(self.mode.direction() * left)
+        let left =
+            (self.cursor.time_left - VALIDATION_TOLERANCE * self.history.end().value()).max(0.0);
+        self.cursor.now.plus(self.mode.direction() * left)
     }
 
     /// Whether the motion turns at the ends of the orbit, and is on it.
@@ -80,7 +77,7 @@ impl<M: Method> Integrator<M> {
         turns[0].since(DoubleDouble::ZERO) >= 0.0
             && turns[1].since(self.history.end()) <= 0.0
             && orbit.is_valid()
-            && [self.now, self.latest_unseen()]
+            && [self.cursor.now, self.latest_unseen()]
                 .iter()
                 .all(|time| orbit.holds(*time))
             && turns.iter().all(turns_at)
@@ -88,12 +85,17 @@ impl<M: Method> Integrator<M> {
 
     /// Whether the present, and what is recorded, lie between the limits.
     fn is_between_limits(&self) -> bool {
-        let Limits { lower, upper } = self.limits;
+        let Limits { lower, upper } = self.settings.limits;
         let range =
             lower - VALIDATION_TOLERANCE * lower.abs()..=upper + VALIDATION_TOLERANCE * upper.abs();
-        let recorded = self.extremes.is_none_or(|Extremes { lowest, highest }| {
+        let recorded = self.extremes().is_none_or(|Extremes { lowest, highest }| {
             lowest <= highest && range.contains(&lowest) && range.contains(&highest)
         });
         recorded && range.contains(&self.position()) && self.rate().is_finite()
     }
+}
+
+/// Whether this can be the length of the next step, where it is known.
+pub fn is_length(length: Option<f64>) -> bool {
+    length.is_none_or(|length| length > 0.0 && length.is_finite())
 }

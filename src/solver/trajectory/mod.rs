@@ -11,7 +11,7 @@ use super::collocation::{Guess, Substep, Task, solve_by_16};
 use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps, Way};
 use super::extremes::Extremes;
-use super::integrator::{Integrator, Method, Mode};
+use super::integrator::{Integrator, Method, Mode, is_length};
 use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
@@ -56,6 +56,8 @@ const RESOLVED: f64 = 0.1;
 /// What each kind of steps leaves for the next of its kind.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Steps {
+    /// Length of the next step with dense output.
+    next_length: Option<f64>,
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
     /// Whether steps of which only the end is asked for may have fewer than 16 nodes.
@@ -74,7 +76,9 @@ impl Method for Steps {
     const MOST_STEPS: u32 = 2_000_000;
 
     fn is_valid(&self, _: &Trajectory) -> bool {
-        self.longest_short_step.is_none_or(|length| length > 0.0) && self.endpoint.are_valid()
+        is_length(self.next_length)
+            && self.longest_short_step.is_none_or(|length| length > 0.0)
+            && self.endpoint.are_valid()
     }
 }
 
@@ -87,6 +91,7 @@ impl Trajectory {
     #[must_use]
     pub fn new(start: State, limits: Limits, tolerance: f64) -> Trajectory {
         let steps = Steps {
+            next_length: None,
             follows_orbits: true,
             takes_endpoint_steps: true,
             trend: None,
@@ -114,19 +119,19 @@ impl Trajectory {
     #[must_use]
     #[inline]
     pub fn stored_state(&self) -> Option<State> {
-        self.history.is_empty().then_some(self.start)
+        self.history.is_empty().then_some(self.start.state)
     }
 
     /// Starts anew from the present state: the equation has changed.
     #[inline]
     pub fn restart(&mut self) {
-        let after_short_step = self.restarts_at_every_step
-            && self.advances == 1
+        let after_short_step = self.restarts.at_every_step
+            && self.restarts.advances == 1
             && self.method.trend.is_some()
             && self.history.is_empty();
         if after_short_step {
             // It leaves nothing else behind.
-            self.advances = 0;
+            self.restarts.advances = 0;
             return;
         }
         self.method.endpoint.restart();
@@ -164,7 +169,7 @@ impl Trajectory {
     ) -> Result<Progress, Failure> {
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
-        let first = self.restarts_at_every_step && self.advances == 1;
+        let first = self.restarts.at_every_step && self.restarts.advances == 1;
         if first && self.method.takes_endpoint_steps {
             let mut there = self.takes_short_step(equation, clock, step);
             if !there && self.history.is_empty() && self.takes_endpoint_steps(equation, step) {
@@ -198,11 +203,12 @@ impl Trajectory {
         if !steps.takes_endpoint_steps {
             return false;
         }
-        let many =
-            || steps.endpoint.are_faster(rest, self.next_length) && !self.may_repeat(equation);
-        if !self.restarts_at_every_step {
+        let many = || {
+            steps.endpoint.are_faster(rest, self.method.next_length) && !self.may_repeat(equation)
+        };
+        if !self.restarts.at_every_step {
             many()
-        } else if self.control.repeated().is_loose() {
+        } else if self.settings.control.repeated().is_loose() {
             // A few take no longer than to look for an orbit.
             steps.endpoint.reach(rest, FEW) || many()
         } else {
@@ -229,7 +235,7 @@ impl Trajectory {
             return false;
         }
         if self.method.trend.is_none() {
-            self.method.trend = Trend::first(equation, time, self.start, step);
+            self.method.trend = Trend::first(equation, time, self.start.state, step);
         }
         let bounds = self.bounds();
         let taken = self.method.trend.as_mut().is_some_and(|trend| {
@@ -237,11 +243,11 @@ impl Trajectory {
                 time,
                 length: step,
                 bounds,
-                control: self.control.repeated(),
-                state: &mut self.start,
+                control: self.settings.control.repeated(),
+                state: &mut self.start.state,
                 trend,
             };
-            short.take(self.level, equation)
+            short.take(self.settings.level, equation)
         });
         if !taken {
             // So that a guess that leads nowhere is not made again.
@@ -254,16 +260,16 @@ impl Trajectory {
     /// What a step may miss: less where its error is made again and again, by an orbit that repeats or by
     /// restarts at every step.
     fn step_control(&self, repeats: bool) -> StepControl {
-        if repeats || self.restarts_at_every_step {
-            self.control.repeated()
+        if repeats || self.restarts.at_every_step {
+            self.settings.control.repeated()
         } else {
-            self.control
+            self.settings.control
         }
     }
 
     /// The positions between which nothing happens.
     fn bounds(&self) -> (f64, f64) {
-        let Limits { lower, upper } = self.limits;
+        let Limits { lower, upper } = self.settings.limits;
         match self.extremes() {
             Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
             None => (lower, upper),
@@ -282,14 +288,14 @@ impl Trajectory {
         let mut way = Way {
             begin: *clock,
             now: DoubleDouble::ZERO,
-            state: self.start,
+            state: self.start.state,
             target: DoubleDouble::new(step),
             bounds: self.bounds(),
             budget: MOST_AT_ONCE,
         };
         let end = self.go(equation, &mut way);
         if end == End::Reached {
-            self.start = way.state;
+            self.start.state = way.state;
         } else {
             self.method.endpoint.restart();
         }
@@ -300,7 +306,7 @@ impl Trajectory {
     fn go<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
         let control = self.step_control(false);
         let steps = &mut self.method.endpoint;
-        steps.go(self.level, equation, control, way)
+        steps.go(self.settings.level, equation, control, way)
     }
 
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
@@ -315,7 +321,7 @@ impl Trajectory {
         let begin = self.history.end();
         self.arrive(begin);
         let mut way = Way {
-            begin: self.time_origin.add(begin),
+            begin: self.start.time.add(begin),
             now: DoubleDouble::ZERO,
             state: self.state(),
             target: target.sub(begin),
@@ -340,15 +346,19 @@ impl Trajectory {
     /// The length of a step that was too short to go on.
     fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<DoubleDouble, f64> {
         let follows_orbits = self.method.follows_orbits;
-        let alone = self.restarts_at_every_step;
-        let few = alone && self.next_length.is_none_or(|length| rest < FEW * length);
+        let alone = self.restarts.at_every_step;
+        let few = alone
+            && self
+                .method
+                .next_length
+                .is_none_or(|length| rest < FEW * length);
         let repeats = !few && self.may_repeat(equation);
         // Nothing of a step that ends where the equation changes is asked for but its end.
         let only_end = alone && !repeats && !self.records_extremes();
         let begin = self.history.end();
         let last = self.history.steps().last();
-        let state = last.map_or(self.start, |step| step.segment.end());
-        let local = equation.seen_from(&self.time_origin.add(begin));
+        let state = last.map_or(self.start.state, |step| step.segment.end());
+        let local = equation.seen_from(&self.start.time.add(begin));
         if self.history.is_empty() && state.rate == 0.0 {
             let rests = follows_orbits && equation.is_autonomous();
             if rests && local.acceleration_from(state) == 0.0 {
@@ -387,7 +397,7 @@ impl Trajectory {
         let control = self.step_control(repeats);
         let scale = state.position.abs();
         let time_scale = local.time_scale(state);
-        let free = match self.next_length {
+        let free = match self.method.next_length {
             Some(length) => length,
             None => FIRST_STEP * time_scale,
         };
@@ -412,8 +422,8 @@ impl Trajectory {
                     None => Guess::Begin(local.acceleration_from(state)),
                 },
             };
-            let step = solve_by_16(self.level, local, &task).map_err(|Diverged| HALVED)?;
-            if self.limits.are_left_behind_by(step.nodes()) {
+            let step = solve_by_16(self.settings.level, local, &task).map_err(|Diverged| HALVED)?;
+            if self.settings.limits.are_left_behind_by(step.nodes()) {
                 return Err(HALVED);
             }
             let factor = if only_end {
@@ -433,7 +443,7 @@ impl Trajectory {
             None => f64::INFINITY,
         };
         // A step cut short says little about the next one.
-        self.next_length = Some(if length == most {
+        self.method.next_length = Some(if length == most {
             free
         } else {
             length * factor.min(growth)

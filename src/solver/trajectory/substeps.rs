@@ -27,6 +27,7 @@ impl Trajectory {
         let mut segment = Segment::new(state, substep.end, &substep.series);
         segment.expand();
         let contact = self
+            .settings
             .limits
             .first_contact(&mut segment, substep.reach(state.position));
         let (progress, passed, end) = match contact {

@@ -5,7 +5,7 @@ use crate::arithmetic::legendre;
 use crate::solver::coupled::polynomials::{LegendreCoefficients, Polynomials};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
-use crate::solver::integrator::{Method, Present};
+use crate::solver::integrator::{Method, Present, is_length};
 
 impl Trajectory {
     /// The present first-order states.
@@ -43,7 +43,7 @@ impl Trajectory {
     /// All of the state at the start, its position counted from the origin of the position.
     pub(super) fn full_start(&self) -> FullState {
         FullState {
-            motion: self.start,
+            motion: self.start.state,
             internal: self.method.internal,
             integrals: self.method.integrals,
         }
@@ -51,9 +51,9 @@ impl Trajectory {
 
     /// x'' and z' at present, from the polynomials.
     pub(super) fn slopes_at_present(&self) -> (f64, [f64; MOST_STATES]) {
-        let step = &self.history.steps()[self.index];
+        let step = &self.history.steps()[self.cursor.step];
         let series = step.segment.series();
-        let u = self.now.since(step.begin) / series.half - 1.0;
+        let u = self.cursor.now.since(step.begin) / series.half - 1.0;
         let terms = by_degree(&step.segment);
         let sum = legendre::sum(u, terms.len(), |k| terms[k]);
         let acceleration = sum / (series.half * series.half);
@@ -83,7 +83,8 @@ impl Method for Carried {
 
     fn is_valid(&self, motion: &Trajectory) -> bool {
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
-        motion.full_start().is_finite()
+        is_length(self.next_length)
+            && motion.full_start().is_finite()
             && self
                 .slopes_before
                 .is_none_or(|(acceleration, slopes)| acceleration.is_finite() && finite(&slopes))

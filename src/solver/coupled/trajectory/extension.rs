@@ -63,7 +63,7 @@ impl Trajectory {
     ) -> Result<DoubleDouble, f64> {
         let begin = self.history.end();
         let first = self.history.is_empty();
-        let (mut origin, mut start) = (self.position_origin, self.full_start());
+        let (mut origin, mut start) = (self.start.origin, self.full_start());
         if let Some(step) = self.history.steps().last() {
             origin = step.origin;
             start.motion = step.segment.end();
@@ -77,7 +77,7 @@ impl Trajectory {
             start.motion.position = moved.value();
             origin = nearest;
         }
-        let local = equation.at(&self.time_origin.add(begin), &origin);
+        let local = equation.at(&self.start.time.add(begin), &origin);
         let (states, integrals) = (equation.states(), equation.integrals());
         let repeats = states == 0
             && integrals == 0
@@ -90,14 +90,14 @@ impl Trajectory {
         let demands = Demands {
             states,
             integrals,
-            few: self.restarts_at_every_step,
-            control: if repeats || self.restarts_at_every_step {
-                self.control.repeated()
+            few: self.restarts.at_every_step,
+            control: if repeats || self.restarts.at_every_step {
+                self.settings.control.repeated()
             } else {
-                StepControl::new(SHARE * self.control.tolerance)
+                StepControl::new(SHARE * self.settings.control.tolerance)
             },
         };
-        let most = if self.restarts_at_every_step {
+        let most = if self.restarts.at_every_step {
             rest
         } else {
             f64::INFINITY
@@ -147,7 +147,7 @@ impl Trajectory {
             .iter()
             .map(|slope| slope.relaxation);
         let relaxation = relaxations.fold(0.0, f64::max);
-        let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
+        let mut free = self.method.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
             free = free.min(self.transient(local, start, &sizes, demands));
@@ -186,7 +186,7 @@ impl Trajectory {
             };
             let mut solve = |iteration| {
                 let way = (iteration, demands.few);
-                stages::solve(self.level, local, &task, way, work)
+                stages::solve(self.settings.level, local, &task, way, work)
             };
             let solved = match solve(iteration) {
                 Err(Diverged) if iteration != Iteration::Newton => solve(Iteration::Newton),
@@ -223,7 +223,7 @@ impl Trajectory {
             Ok((step, factor))
         })?;
         // A step cut short says little about the next one.
-        self.next_length = Some(if length == most && factor >= 1.0 {
+        self.method.next_length = Some(if length == most && factor >= 1.0 {
             free.max(length * factor.min(2.0))
         } else {
             length * factor
@@ -234,7 +234,7 @@ impl Trajectory {
     /// Whether the nodes lie so far beyond the limits that the step says nothing.
     fn leaves(&self, step: &Step, origin: DoubleDouble) -> bool {
         let [lowest, highest] = step.range.map(|position| origin.plus(position).value());
-        self.limits.are_left_behind_by(lowest..=highest)
+        self.settings.limits.are_left_behind_by(lowest..=highest)
     }
 
     /// The longest first step that sees the transients which begin where slopes have jumped.

@@ -36,6 +36,8 @@ pub type Progress = PlainProgress<Event>;
 /// What a coupled system carries along beside position and rate.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Carried {
+    /// Length of the next step.
+    next_length: Option<f64>,
     /// First-order states and integrals at the start.
     internal: [f64; MOST_STATES],
     integrals: [f64; MOST_INTEGRALS],
@@ -71,6 +73,7 @@ impl Trajectory {
         tolerance: f64,
     ) -> Trajectory {
         let carried = Carried {
+            next_length: None,
             internal: start.internal,
             integrals: start.integrals,
             polynomials: None,
@@ -90,7 +93,7 @@ impl Trajectory {
         {
             // The step is cut at the present; what follows is looked at anew, in the same advance.
             self.restart();
-            self.advances = 1;
+            self.restarts.advances = 1;
         }
     }
 
