@@ -113,19 +113,6 @@ pub enum Guess<'a> {
     Begin(f64),
 }
 
-/// What a substep is asked for.
-#[derive(Clone, Copy, Debug)]
-pub struct Task<'a> {
-    /// The state at its begin.
-    pub start: State,
-    /// Its length.
-    pub length: f64,
-    /// When the iteration ends.
-    pub tolerance: IterationTolerance,
-    /// What f is taken for at first.
-    pub guess: Guess<'a>,
-}
-
 /// `Σ_j row[j] · value[j]`, in a fixed order.
 #[inline(always)]
 fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
@@ -137,7 +124,7 @@ fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
     even + odd
 }
 
-/// Solves a substep with 16 nodes.
+/// Solves a substep of this length from `start` with 16 nodes.
 ///
 /// # Errors
 /// [`Diverged`] where the iteration does not converge or leaves the finite
@@ -146,23 +133,23 @@ fn dot<const P: usize>(row: &[f64; P], values: &[f64; P]) -> f64 {
 pub fn solve_by_16<L: LocalEquation>(
     level: Level,
     equation: &L,
-    task: &Task,
+    start: State,
+    length: f64,
+    tolerance: IterationTolerance,
+    guess: Guess,
 ) -> Result<Substep, Diverged> {
-    dispatch!(level, simd => solve(simd, equation, task))
+    dispatch!(level, simd => solve(simd, equation, start, length, tolerance, guess))
 }
 
 #[inline(always)]
 fn solve<S: Simd, L: LocalEquation>(
     simd: S,
     equation: &L,
-    task: &Task,
+    start: State,
+    length: f64,
+    tolerance: IterationTolerance,
+    guess: Guess,
 ) -> Result<Substep, Diverged> {
-    let &Task {
-        start,
-        length,
-        tolerance,
-        ..
-    } = task;
     let half = 0.5 * length;
     let square = half * half;
     let tables = &PAIRED_16;
@@ -176,7 +163,7 @@ fn solve<S: Simd, L: LocalEquation>(
 
     let mut f;
     let mut old = [splat(f64::NAN); 2];
-    match task.guess {
+    match guess {
         Guess::Before(before) => {
             let ratio = splat(half / before.half);
             let from = splat(1.0) + ratio;

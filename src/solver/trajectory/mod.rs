@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::collocation::{Guess, Substep, Task, solve_by_16};
+use super::collocation::{Guess, Substep, solve_by_16};
 use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps, Way};
 use super::extremes::Extremes;
@@ -408,21 +408,18 @@ impl Trajectory {
         let before = last
             .map(|step| step.segment.series())
             .filter(|before| goes_on_from(before.half, longest));
+        let guess = match &before {
+            Some(before) => Guess::Before(before),
+            None => Guess::Begin(local.acceleration_from(state)),
+        };
         let Accepted {
             step,
             length,
             factor,
         } = first_accepted(longest, shortest, |length| {
-            let task = Task {
-                start: state,
-                length,
-                tolerance: control.iteration_tolerance(scale, FIRST_STEP * length / free),
-                guess: match &before {
-                    Some(before) => Guess::Before(before),
-                    None => Guess::Begin(local.acceleration_from(state)),
-                },
-            };
-            let step = solve_by_16(self.settings.level, local, &task).map_err(|Diverged| HALVED)?;
+            let tolerance = control.iteration_tolerance(scale, FIRST_STEP * length / free);
+            let step = solve_by_16(self.settings.level, local, state, length, tolerance, guess)
+                .map_err(|Diverged| HALVED)?;
             if self.settings.limits.are_left_behind_by(step.nodes()) {
                 return Err(HALVED);
             }
