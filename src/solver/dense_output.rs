@@ -156,33 +156,17 @@ impl Segment {
     /// x at `offset` after the begin of the segment.
     #[must_use]
     pub fn position(&self, offset: f64) -> f64 {
-        // Four sums in u⁴, since each operation of a single one waits for the last.
-        let u = self.local(offset);
-        let square = u * u;
-        let fourth = square * square;
-        let p = |k: usize| self.power[k];
-        let mut sums = [p(16), p(17), p(14), p(15)];
-        sums[0] = sums[0] * fourth + p(12);
-        sums[1] = sums[1] * fourth + p(13);
-        for k in [10, 6, 2] {
-            sums[2] = sums[2] * fourth + p(k);
-            sums[3] = sums[3] * fourth + p(k + 1);
-        }
-        for k in [8, 4, 0] {
-            sums[0] = sums[0] * fourth + p(k);
-            sums[1] = sums[1] * fourth + p(k + 1);
-        }
-        (sums[0] + square * sums[2]) + u * (sums[1] + square * sums[3])
+        polynomial(self.local(offset), |k| self.power[k])
     }
 
     /// x' at `offset` after the begin of the segment.
     #[must_use]
     pub fn rate(&self, offset: f64) -> f64 {
-        let u = self.local(offset);
-        let slope = (1..TERMS)
-            .rev()
-            .fold(0.0, |sum, k| sum * u + k as f64 * self.power[k]);
-        slope * self.inverse
+        let slope = |k: usize| match self.power.get(k + 1) {
+            Some(power) => (k + 1) as f64 * power,
+            None => 0.0,
+        };
+        polynomial(self.local(offset), slope) * self.inverse
     }
 
     /// x and x' at `offset` after the begin of the segment.
@@ -205,9 +189,11 @@ impl Segment {
         let parts = ((to - from) / self.length() * PARTS as f64).ceil() as usize;
         let part = (to - from) / parts.max(1) as f64;
         let border = move |i: usize| from + i as f64 * part;
+        let mut last = self.rate(from);
         (0..parts).filter_map(move |i| {
             let (begin, end) = (border(i), border(i + 1));
-            let rates = [self.rate(begin), self.rate(end)];
+            let rates = [last, self.rate(end)];
+            last = rates[1];
             let turns = rates[0] * rates[1] < 0.0;
             if !turns {
                 return None;
@@ -224,6 +210,26 @@ impl Segment {
             Some(self.position(crossing(begin, end, |offset| self.rate(offset))))
         })
     }
+}
+
+/// Σ_k coefficient(k)·u^k. In four sums in u⁴, since each operation of a single one waits for the last.
+#[inline(always)]
+fn polynomial(u: f64, coefficient: impl Fn(usize) -> f64) -> f64 {
+    let square = u * u;
+    let fourth = square * square;
+    let p = coefficient;
+    let mut sums = [p(16), p(17), p(14), p(15)];
+    sums[0] = sums[0] * fourth + p(12);
+    sums[1] = sums[1] * fourth + p(13);
+    for k in [10, 6, 2] {
+        sums[2] = sums[2] * fourth + p(k);
+        sums[3] = sums[3] * fourth + p(k + 1);
+    }
+    for k in [8, 4, 0] {
+        sums[0] = sums[0] * fourth + p(k);
+        sums[1] = sums[1] * fourth + p(k + 1);
+    }
+    (sums[0] + square * sums[2]) + u * (sums[1] + square * sums[3])
 }
 
 /// Steps kept to find an orbit; an orbit near a saddle takes about 20.
