@@ -42,8 +42,11 @@ const RATIO: f64 = 1.01;
 /// From this part of the locking stretch on, the distance to it is what matters.
 const NEAR_WALL: f64 = 0.8;
 
-/// Ratio of neighbouring distances to the locking stretch.
+/// Ratio of neighbouring distances to the locking stretch; and where they are smaller than this part of it, so that the
+/// curves are powers of the distance to every digit.
 const APPROACH: f64 = 0.8;
+const AT_WALL: f64 = 1e-18;
+const APPROACH_AT_WALL: f64 = 1e-3;
 
 /// A maximum of a curve of squared voltage over stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,7 +154,11 @@ impl Curves {
                 position,
             });
         let nearest = wall.map(|wall| (wall - far).min(wall - 1.0) * (1.0 - 1e-6));
-        let inner = std::iter::successors(nearest, |distance| Some(distance * APPROACH))
+        let closer = move |distance: &f64| {
+            let at_wall = *distance < AT_WALL * far;
+            Some(distance * if at_wall { APPROACH_AT_WALL } else { APPROACH })
+        };
+        let inner = std::iter::successors(nearest, closer)
             .take_while(|distance| *distance > 1e-300)
             .map(|distance| Point {
                 near_wall: true,

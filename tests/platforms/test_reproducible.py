@@ -11,6 +11,10 @@ import pytest
 from conftest import FMUS, MODELS, REPOSITORY, packed
 
 
+# Both FMUs are compiled anew for every platform: ten minutes, and more where the machine is busy.
+pytestmark = pytest.mark.timeout(3600)
+
+
 @pytest.fixture(scope="module")
 def elsewhere(tmp_path_factory):
     """Another folder, in which the same was built from the same sources."""

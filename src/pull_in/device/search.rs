@@ -18,8 +18,9 @@ impl Curves {
                 [_, Some((last, rising))] if rising > 0.0 && here <= 0.0 => {
                     Some(self.between(last, point, &slope))
                 }
+                // Next to the wall the slope is infinite at one point after another.
                 [Some((first, high)), Some((last, low))]
-                    if low > 0.0 && low <= high && low <= here =>
+                    if low > 0.0 && low < f64::INFINITY && low <= high && low <= here =>
                 {
                     self.dip(first, point, &slope)
                         .map(|dip| self.between(first_of(first, last, dip), dip, &slope))
@@ -132,5 +133,39 @@ pub(super) fn bisect(mut from: f64, mut to: f64, holds: impl Fn(f64) -> bool) ->
         } else {
             to = middle;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::super::RELAXED;
+    use super::*;
+    use crate::actuator::Parameters;
+    use crate::actuator::device::{Device, Elasticity, Locking};
+
+    /// A material that locks before it could pull in: next to the wall every slope is infinite, and no dip.
+    #[test]
+    fn a_curve_without_a_fold_is_looked_at_a_few_hundred_times() {
+        let sheet = Parameters {
+            aspect: 100.0,
+            surface_energy: 0.0,
+            surface_tension: 0.0,
+            surface_elasticity: 0.0,
+        };
+        let device = Device {
+            elasticity: Elasticity::Gent(Locking::new(5.0)),
+            ..Device::plain(sheet)
+        };
+        let curves = Curves::new(&device, RELAXED, 0.0).expect("a voltage is imposed");
+        let looks = Cell::new(0);
+        let slope = |point: Point| {
+            looks.set(looks.get() + 1);
+            curves.supply(point).slope()
+        };
+        let value = |point: Point| curves.supply(point).term[0];
+        assert_eq!(curves.first_fold(curves.grid(), slope, value), None);
+        assert!((100..1000).contains(&looks.get()), "{}", looks.get());
     }
 }
