@@ -77,17 +77,46 @@ pub fn goes_on_from(half: f64, length: f64) -> bool {
     length <= 2.0 * MOST_LONGER * half
 }
 
+/// By how much a step may be longer than the one before, where that had not grown itself. Where it grows as far as
+/// the last one allows, every second attempt is refused at a tolerance of 1e-6, every seventh at 1e-12.
+const MOST_GROWTH: f64 = 1.05;
+
+/// How fast steps may grow.
+#[derive(Clone, Copy, Debug)]
+pub struct Growth {
+    /// The length of the step before; nothing where there is none, and the next step may be as long as it can.
+    pub before: Option<f64>,
+    /// The power of the ratio of a step's length to that of the one before, by which the next one may be longer again.
+    pub acceleration: i32,
+}
+
+impl Growth {
+    /// By which factor the step after one of this length may be longer, at most: not at all where that had to be
+    /// shortened.
+    #[inline(always)]
+    fn most(&self, length: f64, shortened: bool) -> f64 {
+        match self.before {
+            _ if shortened => 1.0,
+            Some(before) => MOST_GROWTH * (length / before).max(1.0).powi(self.acceleration),
+            None => f64::INFINITY,
+        }
+    }
+}
+
 /// Attempts steps of this length and shorter ones, until one is accepted. An attempt returns the
-/// step and by which factor the next one may be longer, or by which factor to shorten this one.
+/// step and by which factor the next one may be longer, or by which factor to shorten this one. Steps grow no
+/// faster than `growth` allows.
 ///
 /// # Errors
 /// The length that is no longer than `shortest`, or NaN.
 #[inline(always)]
 pub fn first_accepted<T>(
-    mut length: f64,
+    longest: f64,
     shortest: f64,
+    growth: Growth,
     mut attempt: impl FnMut(f64) -> Result<(T, f64), f64>,
 ) -> Result<Accepted<T>, f64> {
+    let mut length = longest;
     loop {
         if length.is_nan() || length <= shortest {
             return Err(length);
@@ -97,7 +126,7 @@ pub fn first_accepted<T>(
                 return Ok(Accepted {
                     step,
                     length,
-                    factor,
+                    factor: factor.min(growth.most(length, length < longest)),
                 });
             }
             Err(factor) => length *= factor,
@@ -234,6 +263,37 @@ mod tests {
         assert!(matches!(control.judge(1e-3, 0.1), Err(f) if f < 0.6));
         assert!(matches!(control.judge(1e-12, 0.01), Ok(f) if f > 1.0));
         assert!(matches!(control.judge(0.99e-9, 0.01), Ok(f) if f < 1.0));
+    }
+
+    /// The factor that is left to the step after the first one that is no longer than 1, of a `longest` one on.
+    fn factor_after(longest: f64, growth: Growth) -> f64 {
+        let attempt = |length: f64| {
+            if length > 1.0 {
+                Err(HALVED)
+            } else {
+                Ok(((), 3.0))
+            }
+        };
+        first_accepted(longest, 1e-3, growth, attempt).map_or(f64::NAN, |accepted| accepted.factor)
+    }
+
+    #[test]
+    fn steps_grow_faster_the_longer_they_have_grown() {
+        let after = |before: f64, acceleration| Growth {
+            before: Some(before),
+            acceleration,
+        };
+        assert_eq!(factor_after(1.0, after(1.0, 1)), MOST_GROWTH);
+        assert_eq!(factor_after(1.0, after(2.0, 1)), MOST_GROWTH);
+        assert_eq!(factor_after(1.0, after(0.8, 1)), MOST_GROWTH * 1.25);
+        assert_eq!(factor_after(1.0, after(0.8, 2)), MOST_GROWTH * 1.5625);
+        assert_eq!(factor_after(1.0, after(0.1, 1)), 3.0);
+        let first = Growth {
+            before: None,
+            acceleration: 1,
+        };
+        assert_eq!(factor_after(1.0, first), 3.0);
+        assert_eq!(factor_after(1.5, first), 1.0);
     }
 
     #[test]

@@ -16,7 +16,9 @@ use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
-use super::step_control::{Accepted, HALVED, SHORTEST, StepControl, first_accepted, goes_on_from};
+use super::step_control::{
+    Accepted, Growth, HALVED, SHORTEST, StepControl, first_accepted, goes_on_from,
+};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
@@ -28,11 +30,9 @@ const FIRST_STEP: f64 = 2.0;
 /// Steps that take no longer than to look for an orbit.
 const FEW: f64 = 4.0;
 
-/// By how much a step may be longer than the one before; and by how much more, where that had grown itself. A step that
-/// was refused at first does not let the next one grow. How long steps may be varies with the motion's phase: by a few
-/// percent from step to step, or by powers of ten where the motion turns far out. Where a step grows as far as the
-/// last one allows, every second attempt is refused at a tolerance of 1e-6, every seventh at 1e-12.
-const MOST_GROWTH: f64 = 1.05;
+/// The growth of a step lets the next one grow as much again: how long steps may be varies with the motion's phase,
+/// by powers of ten where the motion turns far out.
+const ACCELERATION: i32 = 1;
 
 /// So many endpoint-only steps take no longer than one with dense output.
 const PER_DENSE_STEP: f64 = 2.0;
@@ -405,6 +405,10 @@ impl Trajectory {
         let shortest = (SHORTEST * free).min(0.5 * most);
         let longest = free.min(most);
         let last = self.history.steps().last();
+        let growth = Growth {
+            before: last.map(|step| step.segment.length()),
+            acceleration: ACCELERATION,
+        };
         let before = last
             .map(|step| step.segment.series())
             .filter(|before| goes_on_from(before.half, longest));
@@ -416,7 +420,7 @@ impl Trajectory {
             step,
             length,
             factor,
-        } = first_accepted(longest, shortest, |length| {
+        } = first_accepted(longest, shortest, growth, |length| {
             let tolerance = control.iteration_tolerance(scale, FIRST_STEP * length / free);
             let step = solve_by_16(self.settings.level, local, state, length, tolerance, guess)
                 .map_err(|Diverged| HALVED)?;
@@ -434,16 +438,11 @@ impl Trajectory {
             };
             Ok((step, factor))
         })?;
-        let growth = match before {
-            _ if length < longest => 1.0,
-            Some(before) => MOST_GROWTH * (length / (2.0 * before.half)).max(1.0),
-            None => f64::INFINITY,
-        };
         // A step cut short says little about the next one.
         self.method.next_length = Some(if length == most {
             free
         } else {
-            length * factor.min(growth)
+            length * factor
         });
         Ok(step)
     }

@@ -11,7 +11,7 @@ use crate::solver::dense_output::Segment;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::step_control::{
-    Accepted, HALVED, SLOW, StepControl, first_accepted, goes_on_from, judge,
+    Accepted, Growth, HALVED, SLOW, StepControl, first_accepted, goes_on_from, judge,
 };
 
 /// Part of the tolerance that one step may spend between its ends: a motion may swing by much
@@ -40,6 +40,10 @@ const ERROR_NOISE: f64 = 32.0 * f64::EPSILON;
 
 /// Steps that the error allows to be longer by this factor than fixed-point iteration does are left to Newton's method.
 const MUCH_LONGER: f64 = 3.0;
+
+/// The growth of a step counts twice for how much the next one may grow: after a transient, steps become longer by
+/// powers of ten.
+const ACCELERATION: i32 = 2;
 
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
@@ -158,12 +162,16 @@ impl Trajectory {
         let most = most.min(seen);
         let shortest = (SHORTEST_TRANSIENT * scale).min(0.5 * most);
         let before = self.slopes_of_last_step(fresh);
+        let growth = Growth {
+            before: before.as_ref().map(|last| 2.0 * last.half),
+            acceleration: ACCELERATION,
+        };
         let control = demands.control;
         let Accepted {
             step,
             length,
             factor,
-        } = first_accepted(free.min(most), shortest, |length| {
+        } = first_accepted(free.min(most), shortest, growth, |length| {
             let part = (length / scale).min(1.0);
             let task = Task {
                 start,
