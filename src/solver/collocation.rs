@@ -18,7 +18,7 @@ use std::ops::RangeInclusive;
 
 use fearless_simd::{Level, Simd, dispatch, f64x8};
 
-use super::iteration::{Diverged, IterationTolerance};
+use super::iteration::{Convergence, Diverged, IterationTolerance};
 use super::tables::product::product_in_lanes;
 use super::tables::{PAIRED_16, PAIRS};
 use super::{LocalEquation, State};
@@ -191,11 +191,8 @@ fn solve<S: Simd, L: LocalEquation>(
             ];
         }
     }
-    let mut contraction = 0.0_f64;
-    let mut last_change = f64::NAN;
-    let mut iterations = 0;
+    let mut convergence = Convergence::to(tolerance, 0.0);
     loop {
-        iterations += 1;
         let sums = (f[0] + f[1]).store();
         let differences = (f[0] - f[1]).store();
         let mean = dot(&tables.mean, &sums);
@@ -223,52 +220,32 @@ fn solve<S: Simd, L: LocalEquation>(
             .largest();
         old = bent;
 
-        if iterations > 1 {
-            let ratio = change / last_change;
-            let expected = if ratio.is_nan() {
-                1.0
-            } else {
-                contraction.max(ratio)
+        if convergence.is_reached_by(change)? {
+            let highest = new[0].max(new[1]).largest();
+            let lowest = new[0].min(new[1]).smallest();
+            let end = State {
+                position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
+                rate: start.rate + length * mean,
             };
-            let done = tolerance.has_converged(iterations, change, last_change, [expected, 1.0])?;
-            if iterations == 2 && done {
-                // A change that is nothing but rounding tells nothing of it.
-                contraction = if change <= tolerance.rounding {
-                    0.0
-                } else {
-                    expected
-                };
-            } else if iterations > 2 && !(done && ratio > 1.0) {
-                contraction = contraction.max(ratio);
+            if !(end.position.is_finite() && end.rate.is_finite() && lowest.is_finite()) {
+                return Err(Diverged);
             }
-            if done {
-                let highest = new[0].max(new[1]).largest();
-                let lowest = new[0].min(new[1]).smallest();
-                let end = State {
-                    position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
-                    rate: start.rate + length * mean,
-                };
-                if !(end.position.is_finite() && end.rate.is_finite() && lowest.is_finite()) {
-                    return Err(Diverged);
-                }
-                let even: f64x8<S> = product_in_lanes(simd, &tables.series_from_sums, &sums);
-                let odd: f64x8<S> =
-                    product_in_lanes(simd, &tables.series_from_differences, &differences);
-                let series = Series {
-                    half,
-                    even: (even * splat(square)).store(),
-                    odd: (odd * splat(square)).store(),
-                };
-                return Ok(Substep {
-                    end,
-                    series,
-                    highest,
-                    lowest,
-                    contraction,
-                });
-            }
+            let even: f64x8<S> = product_in_lanes(simd, &tables.series_from_sums, &sums);
+            let odd: f64x8<S> =
+                product_in_lanes(simd, &tables.series_from_differences, &differences);
+            let series = Series {
+                half,
+                even: (even * splat(square)).store(),
+                odd: (odd * splat(square)).store(),
+            };
+            return Ok(Substep {
+                end,
+                series,
+                highest,
+                lowest,
+                contraction: convergence.contraction,
+            });
         }
-        last_change = change;
         f = [
             equation.acceleration(load_right, new[0], rate + rate_odd),
             equation.acceleration(load_left, new[1], rate - rate_odd),

@@ -19,7 +19,7 @@ use super::polynomials::{LegendreCoefficients, TERMS};
 use super::stage_values::{StageValues, series};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
-use crate::solver::iteration::{Diverged, IterationTolerance};
+use crate::solver::iteration::{Convergence, Diverged, IterationTolerance};
 use crate::solver::tables::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
 
 /// Matrices that let an iteration shrink its change by less than this factor are made anew.
@@ -29,15 +29,12 @@ const REFRESHED: f64 = 0.4;
 const NEWTON_WORK: u32 = 10;
 const STATES_WORK: u32 = 4;
 
-/// The first ratio of two changes says little of the rate of convergence: the first change may be that of a state that is
-/// found at once, the second one of another that is not.
+/// Least ratio of the first two changes: the first change may be that of a state that is found at once, the
+/// second one of another that is not.
 const UNKNOWN_RATE: f64 = 0.1;
 
 /// The first guess bends the motion by no more than this part of its size.
 const FARTHEST_GUESS: f64 = 0.5;
-
-/// A change that is a small multiple of rounding tells nothing of the convergence.
-const NOISE: f64 = 16.0;
 
 /// Slopes over a step by their Legendre coefficients.
 #[derive(Clone, Copy, Debug)]
@@ -243,19 +240,17 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         at.internal[k] = fill(start.internal[k]) + internal[k].gain;
     }
 
-    let (mut contraction, mut last_change) = (0.0_f64, f64::NAN);
-    let mut iterations = 0;
+    let mut convergence = Convergence::to(tolerance, UNKNOWN_RATE);
     let mut newton: Option<Newton<S, R, N>> = None;
     loop {
-        iterations += 1;
         *work += 1;
-        let is_slow = iterations > 2 && contraction > REFRESHED;
+        let is_slow = convergence.contraction > REFRESHED;
         if iteration != Iteration::FixedPoint && (newton.is_none() || is_slow) {
             let whole = iteration == Iteration::Newton;
             let (step, equation) = ((rule, half), (local, load, states));
             let matrices = newton.get_or_insert(Newton::NONE);
             matrices.make(simd, step, equation, &at, sizes, whole)?;
-            contraction = 0.0;
+            convergence.contraction = 0.0;
             *work += if whole { NEWTON_WORK } else { STATES_WORK };
         }
         let mut change = 0.0_f64;
@@ -294,23 +289,9 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             }
         }
 
-        if iterations > 1 {
-            let ratio = change / last_change;
-            let expected = contraction.max(ratio);
-            let rate = if iterations == 2 {
-                expected.max(UNKNOWN_RATE)
-            } else {
-                expected
-            };
-            let done = tolerance.has_converged(iterations, change, last_change, [rate, 1.0])?;
-            if change > NOISE * tolerance.rounding {
-                contraction = expected;
-            }
-            if done {
-                break;
-            }
+        if convergence.is_reached_by(change)? {
+            break;
         }
-        last_change = change;
     }
 
     let positions: [f64; N] = at.position.store();
@@ -375,7 +356,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
         nodes: N,
         stiff: iteration != Iteration::FixedPoint,
         range,
-        contraction,
+        contraction: convergence.contraction,
     })
 }
 
