@@ -45,7 +45,7 @@ pub enum Known {
 }
 
 impl Known {
-    /// All of them, in the order of [`Sample::slopes`].
+    /// All of them, in the order of [`Prediction::slopes`].
     pub const ALL: [Known; 9] = [
         Known::Aspect,
         Known::SurfaceEnergy,
@@ -89,7 +89,7 @@ pub struct Experiment<'a> {
 
 /// The stretch at one of the times.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct Prediction {
     /// λ.
     pub stretch: f64,
     /// ∂λ/∂ of each of [`Known::ALL`].
@@ -105,11 +105,11 @@ pub enum Interruption {
     Failure(Failure),
 }
 
-/// Follows an experiment and returns a sample for each of its times.
+/// Follows an experiment and returns a prediction for each of its times.
 ///
 /// # Errors
 /// [`Interruption`] before the last time was reached.
-pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
+pub fn follow(experiment: &Experiment) -> Result<Vec<Prediction>, Interruption> {
     let Experiment {
         mut scene,
         voltage_scale,
@@ -118,13 +118,13 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
         times,
         tolerance,
     } = *experiment;
-    let mut samples = Vec::with_capacity(times.len());
+    let mut predictions = Vec::with_capacity(times.len());
     let mut budget = MOST_SUBSTEPS;
     let mut clock = DoubleDouble::ZERO;
     let mut trajectory = Trajectory::new(scene.start, scene.limits, tolerance);
     let mut beside = Known::ALL.map(start_of);
     let Some(&last) = times.last() else {
-        return Ok(samples);
+        return Ok(predictions);
     };
     scene.drive = Drive::constant(0.0, scene.drive.prestress.value());
     for (index, ramp) in voltage.iter().enumerate() {
@@ -166,14 +166,14 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
                 }));
             };
             let whole = segment.length() >= rest;
-            while let Some(&time) = times.get(samples.len()) {
+            while let Some(&time) = times.get(predictions.len()) {
                 let offset = time_scale * (time - ramp.time) - passed;
                 if !(offset <= segment.length() || whole && time <= border) {
                     break;
                 }
                 let offset = offset.min(segment.length());
                 let since = time - ramp.time;
-                samples.push(sample(&segment, &segments, offset, since));
+                predictions.push(prediction(&segment, &segments, offset, since));
             }
             beside = segments.map(|segment| segment.end());
             passed = if whole {
@@ -194,13 +194,13 @@ pub fn follow(experiment: &Experiment) -> Result<Vec<Sample>, Interruption> {
         }
     }
     // Those at the very start need no motion.
-    while samples.len() < times.len() {
-        samples.push(Sample {
+    while predictions.len() < times.len() {
+        predictions.push(Prediction {
             stretch: trajectory.position(),
             slopes: beside.map(|state| state.position),
         });
     }
-    Ok(samples)
+    Ok(predictions)
 }
 
 /// The state at the start as it changes with a parameter.
@@ -306,10 +306,10 @@ fn slope(scene: &Scene, time: DoubleDouble, state: State, direction: &Scene, cha
 }
 
 /// The stretch at `offset` after the begin of a substep, the time `since` after that of its ramp.
-fn sample(segment: &Segment, beside: &[Segment; 9], offset: f64, since: f64) -> Sample {
+fn prediction(segment: &Segment, beside: &[Segment; 9], offset: f64, since: f64) -> Prediction {
     let mut slopes = beside.each_ref().map(|segment| segment.position(offset));
     slopes[Known::TimeScale as usize] += since * segment.rate(offset);
-    Sample {
+    Prediction {
         stretch: segment.position(offset),
         slopes,
     }

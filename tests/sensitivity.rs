@@ -7,7 +7,7 @@ use clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Polynomial;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sensitivity::{
-    Experiment, Interruption, Known, Ramp, Sample, follow,
+    Experiment, Interruption, Known, Prediction, Ramp, follow,
 };
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::solver::trajectory::Trajectory;
@@ -102,7 +102,7 @@ fn plain(scene: &Scene, voltage_scale: f64, time_scale: f64) -> Vec<f64> {
     stretches
 }
 
-fn followed(scene: Scene, voltage: &[Ramp], times: &[f64]) -> Vec<Sample> {
+fn followed(scene: Scene, voltage: &[Ramp], times: &[f64]) -> Vec<Prediction> {
     let experiment = Experiment {
         scene,
         voltage_scale: 1.1,

@@ -30,7 +30,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates<M: Model>(
             nextEventTimeDefined: false.into(),
             nextEventTime: 0.0,
         };
-        Ok(update.event)
+        Ok(update.message)
     })
 }
 

@@ -8,7 +8,7 @@ use fmi::fmi2::binding::{
 };
 
 use crate::description::LOG_CATEGORIES;
-use crate::instance::{Event, Fault, Severity};
+use crate::instance::{Fault, Message, Severity};
 
 /// Log categories by their place in [`LOG_CATEGORIES`].
 const EVENTS: usize = 0;
@@ -102,13 +102,13 @@ impl Host {
 
     /// Tells the host of something in a call that was done, and gives its status.
     #[cold]
-    pub fn announce(&self, function: &str, event: Event) -> fmi2Status {
-        let (status, category) = if event.warning {
+    pub fn announce(&self, function: &str, message: Message) -> fmi2Status {
+        let (status, category) = if message.warning {
             (fmi2Status_fmi2Warning, WARNINGS)
         } else {
             (fmi2Status_fmi2OK, EVENTS)
         };
-        self.log(status, category, &format!("{function}: {}", event.text));
+        self.log(status, category, &format!("{function}: {}", message.text));
         status
     }
 }

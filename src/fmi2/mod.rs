@@ -41,7 +41,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use fmi::fmi2::binding::*;
 
-use crate::instance::{Event, Fault, Instance, Severity, Type};
+use crate::instance::{Fault, Instance, Message, Severity, Type};
 use crate::model::Model;
 use calls::Call;
 pub use exchange::*;
@@ -93,13 +93,13 @@ fn guarded<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
-    mut body: impl FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>,
+    mut body: impl FnMut(&mut Component<M>) -> Result<Option<Message>, Fault>,
 ) -> fmi2Status {
     guarded_call(component, function, call, &mut body)
 }
 
 /// What a call does, as one type for all calls.
-type Body<'a, M> = &'a mut dyn FnMut(&mut Component<M>) -> Result<Option<Event>, Fault>;
+type Body<'a, M> = &'a mut dyn FnMut(&mut Component<M>) -> Result<Option<Message>, Fault>;
 
 /// [`guarded`] for all calls of a model: once in the binary.
 #[inline(never)]
@@ -118,7 +118,7 @@ fn guarded_in_place<M: Model>(
     component: fmi2Component,
     function: &str,
     call: Call,
-    body: impl FnOnce(&mut Component<M>) -> Result<Option<Event>, Fault>,
+    body: impl FnOnce(&mut Component<M>) -> Result<Option<Message>, Fault>,
 ) -> fmi2Status {
     // SAFETY: the pointer is the host's, as it came: null, or from `fmi2Instantiate`.
     let Some(component) = (unsafe { behind::<M>(component) }) else {
@@ -141,10 +141,10 @@ fn guarded_in_place<M: Model>(
 impl<M: Model> Component<M> {
     /// Tells the host what has happened in a call.
     #[cold]
-    fn tell(&mut self, function: &str, told: Result<Option<Event>, Fault>) -> fmi2Status {
+    fn tell(&mut self, function: &str, told: Result<Option<Message>, Fault>) -> fmi2Status {
         match told {
             Ok(None) => fmi2Status_fmi2OK,
-            Ok(Some(event)) => self.host.announce(function, event),
+            Ok(Some(message)) => self.host.announce(function, message),
             Err(fault) => {
                 if fault.severity == Severity::Fatal {
                     self.instance.give_up();

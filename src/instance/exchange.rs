@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
-use super::{Event, Fault, Instance, Simulation, check_time};
+use super::{Fault, Instance, Message, Simulation, check_time};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
@@ -36,8 +36,8 @@ pub struct Update {
     pub terminate: bool,
     /// The continuous states have jumped.
     pub states_changed: bool,
-    /// Something for the host's log.
-    pub event: Option<Event>,
+    /// For the host's log.
+    pub message: Option<Message>,
 }
 
 /// A recording of the extremes from this state on, where the scene asks for one.
@@ -134,7 +134,7 @@ impl<M: Model> Instance<M> {
         let mut update = Update {
             terminate: false,
             states_changed: std::mem::take(&mut exchange.states_changed),
-            event: None,
+            message: None,
         };
         if let Some(Collapse { limit, .. }) = exchange.collapse {
             update.terminate = M::at_limit(&scene, limit) == AtLimit::Terminate;
@@ -161,7 +161,7 @@ impl<M: Model> Instance<M> {
             let state = M::state(&self.view());
             self.exchange()?.state = state;
         }
-        update.event = Some(Event {
+        update.message = Some(Message {
             warning: false,
             text: format!("{text}; {consequence}"),
         });

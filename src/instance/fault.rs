@@ -41,9 +41,9 @@ impl Fault {
     }
 }
 
-/// Something worth a line in the host's log although the call succeeded.
+/// A line for the host's log from a call that succeeded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Event {
+pub struct Message {
     /// Whether it is a warning; else it is an event of the simulation.
     pub warning: bool,
     /// What to tell the user.

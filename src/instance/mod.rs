@@ -13,7 +13,7 @@ mod state;
 mod values;
 
 pub use exchange::{Exchange, Update};
-pub use fault::{Event, Fault, Severity};
+pub use fault::{Fault, Message, Severity};
 pub use phase::{Interface, Phase};
 pub use run::{Run, STEP_RANGE};
 pub use state::{LAYOUT as STATE_LAYOUT, Saved};
@@ -147,8 +147,8 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Sets start time, stop time and tolerance of the simulation. Returns an
-    /// event where the tolerance had to be moved into [`TOLERANCE_RANGE`].
+    /// Sets start time, stop time and tolerance of the simulation. Returns a
+    /// message where the tolerance had to be moved into [`TOLERANCE_RANGE`].
     ///
     /// # Errors
     /// Error for a number that is not finite, a tolerance that is not positive
@@ -158,7 +158,7 @@ impl<M: Model> Instance<M> {
         tolerance: Option<f64>,
         start_time: f64,
         stop_time: Option<f64>,
-    ) -> Result<Option<Event>, Fault> {
+    ) -> Result<Option<Message>, Fault> {
         check_time("start time", start_time)?;
         // A run without an end.
         let stop_time = stop_time.filter(|&stop| stop != f64::INFINITY);
@@ -189,7 +189,7 @@ impl<M: Model> Instance<M> {
         M::begin_inputs(&mut self.scene, DoubleDouble::new(start_time));
         Ok((kept != wanted).then(|| {
             let [wanted, smallest, largest, kept] = [wanted, smallest, largest, kept].map(Shortest);
-            Event {
+            Message {
                 warning: true,
                 text: format!(
                     "the tolerance {wanted} is outside {smallest} to {largest}; {kept} is used"

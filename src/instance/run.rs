@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::phase::Phase;
 use super::values::input_bit;
-use super::{Event, Fault, Instance, Severity, Simulation};
+use super::{Fault, Instance, Message, Severity, Simulation};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::Access;
 use crate::model::{AtLimit, Collapse, Integration, Model};
@@ -212,7 +212,7 @@ impl<M: Model> Run<M> {
         scene: &M::Scene,
         current: f64,
         step: f64,
-    ) -> Result<Option<Event>, Fault> {
+    ) -> Result<Option<Message>, Fault> {
         self.cut_from = None;
         if self.collapse.is_some() {
             self.clock = self.clock.add(DoubleDouble::new(step));
@@ -232,7 +232,7 @@ impl<M: Model> Run<M> {
                 match M::at_limit(scene, limit) {
                     AtLimit::Hold => {
                         self.clock = time.add(DoubleDouble::new(step).plus(-after));
-                        Ok(Some(Event {
+                        Ok(Some(Message {
                             warning: false,
                             text: format!("{text}; it stays there ({choice} = hold)"),
                         }))
@@ -269,19 +269,19 @@ impl<M: Model> Run<M> {
 }
 
 impl<M: Model> Instance<M> {
-    /// Moves the actuator by one communication step. Returns an event where the
+    /// Moves the actuator by one communication step. Returns a message where the
     /// actuator has collapsed in it.
     ///
     /// # Errors
     /// Error for a step that cannot be meant, with nothing changed; Discard
     /// where the step ends early, at [`Instance::last_successful_time`].
-    pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
+    pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Message>, Fault> {
         self.followed(current, step)
             .map_err(|fault| self.failed(fault))
     }
 
     #[inline(always)]
-    fn followed(&mut self, current: f64, step: f64) -> Result<Option<Event>, Fault> {
+    fn followed(&mut self, current: f64, step: f64) -> Result<Option<Message>, Fault> {
         let Simulation::Run(run) = &mut self.simulation else {
             return Err(Fault::error("initialization has not ended".into()));
         };

@@ -1,5 +1,5 @@
-//! Pull-in voltages: each is computed when it is first read, and kept until the actuator or its
-//! prestress changes. That with losses follows twenty motions and more.
+//! Pull-in voltages. Each is computed when it is first read, and kept until the actuator or its prestress
+//! changes. The pull-in voltage with losses is found by following at least twenty motions.
 
 use std::cell::{Cell, RefCell};
 
@@ -9,29 +9,29 @@ use crate::model::View;
 use crate::pull_in::device::{Fold, Glassy, Search, dynamic, from_rest, quasi_static};
 use crate::solver::coupled::LocalCoupledEquation;
 
-/// Which threshold.
+/// A kind of pull-in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Threshold {
-    /// Of a slowly raised voltage, branches relaxed.
+pub(super) enum PullIn {
+    /// Under a slowly raised voltage; the Maxwell branches are relaxed.
     Static,
-    /// Of a step without losses.
+    /// After a step of the voltage, without losses.
     Dynamic,
-    /// Of a step with them.
+    /// After a step of the voltage from rest, with losses.
     FromRest,
-    /// The static one of the actuator whose branches have not relaxed.
+    /// Static, with branches that have not relaxed.
     GlassyStatic,
-    /// That of a step of it.
+    /// Dynamic, with branches that have not relaxed.
     GlassyDynamic,
 }
 
-const COUNT: usize = Threshold::GlassyDynamic as usize + 1;
+const COUNT: usize = PullIn::GlassyDynamic as usize + 1;
 
-/// What has been computed.
+/// The thresholds that have been computed.
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    /// Of which actuator, under which prestress.
+    /// The actuator and its prestress.
     of: Option<(Device, f64)>,
-    /// Each threshold that has been asked for.
+    /// Each threshold that has been read; inside, none where there is no such pull-in.
     found: [Option<Option<Fold>>; COUNT],
 }
 
@@ -40,7 +40,7 @@ const NOTHING: Known = Known {
     found: [None; COUNT],
 };
 
-/// The thresholds that are known. They follow from the scene and are no part of what it is: all
+/// A memory of computed thresholds. They follow from the scene and are not a part of it: any two memories
 /// are equal, and none is saved.
 #[derive(Debug)]
 pub struct Thresholds {
@@ -78,7 +78,7 @@ impl Thresholds {
         self.search.borrow_mut().get_or_insert_default();
     }
 
-    fn fold(&self, which: Threshold, device: &Device, prestress: f64) -> Option<Fold> {
+    fn fold(&self, which: PullIn, device: &Device, prestress: f64) -> Option<Fold> {
         let mut known = self.known.get();
         if known.of != Some((*device, prestress)) {
             known = Known {
@@ -88,14 +88,14 @@ impl Thresholds {
         }
         let place = &mut known.found[which as usize];
         let fold = *place.get_or_insert_with(|| match which {
-            Threshold::Static => quasi_static(device, prestress),
-            Threshold::Dynamic => dynamic(device, prestress),
-            Threshold::FromRest => {
+            PullIn::Static => quasi_static(device, prestress),
+            PullIn::Dynamic => dynamic(device, prestress),
+            PullIn::FromRest => {
                 let mut search = self.search.borrow_mut();
                 from_rest(device, prestress, search.get_or_insert_default())
             }
-            Threshold::GlassyStatic => Glassy(device).quasi_static(prestress),
-            Threshold::GlassyDynamic => Glassy(device).dynamic(prestress),
+            PullIn::GlassyStatic => Glassy(device).quasi_static(prestress),
+            PullIn::GlassyDynamic => Glassy(device).dynamic(prestress),
         });
         self.known.set(known);
         fold
@@ -103,7 +103,7 @@ impl Thresholds {
 }
 
 impl View<'_, Si> {
-    fn fold(&self, which: Threshold) -> (Option<Fold>, f64) {
+    fn fold(&self, which: PullIn) -> (Option<Fold>, f64) {
         let (basis, _) = self.basis();
         let prestress = basis.local().load(0.0_f64).prestress;
         let fold = self.scene.thresholds.fold(which, &basis.device, prestress);
@@ -112,14 +112,14 @@ impl View<'_, Si> {
 
     /// A pull-in voltage at the present force, in V; +∞ where there is none.
     #[must_use]
-    pub(super) fn threshold(&self, which: Threshold) -> f64 {
+    pub(super) fn threshold(&self, which: PullIn) -> f64 {
         let (fold, volts) = self.fold(which);
         fold.map_or(f64::INFINITY, |fold| fold.voltage * volts)
     }
 
     /// The thickness stretch at a threshold; 0 where there is none.
     #[must_use]
-    pub(super) fn thickness_at(&self, which: Threshold) -> f64 {
+    pub(super) fn thickness_at(&self, which: PullIn) -> f64 {
         let (fold, _) = self.fold(which);
         fold.map_or(0.0, |fold| 1.0 / (fold.stretch * fold.stretch))
     }
@@ -128,7 +128,7 @@ impl View<'_, Si> {
     /// escapes or there is no such voltage.
     #[must_use]
     pub fn snaps_to(&self) -> f64 {
-        let (fold, _) = self.fold(Threshold::Static);
+        let (fold, _) = self.fold(PullIn::Static);
         fold.and_then(|fold| fold.snaps_to).unwrap_or(0.0)
     }
 
@@ -136,11 +136,11 @@ impl View<'_, Si> {
     /// V; +∞ where neither does.
     #[must_use]
     pub fn pull_in_margin(&self) -> f64 {
-        let step = self.threshold(Threshold::FromRest);
+        let step = self.threshold(PullIn::FromRest);
         let limit = if step < f64::INFINITY {
             step
         } else {
-            self.threshold(Threshold::Static)
+            self.threshold(PullIn::Static)
         };
         limit - self.supply_voltage().abs()
     }

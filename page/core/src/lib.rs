@@ -9,7 +9,7 @@ use std::cell::RefCell;
 
 use dielectric_elastomer_actuator::actuator::Coefficients;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration, energy};
-use dielectric_elastomer_actuator::instance::{Event, Fault, Instance, Type};
+use dielectric_elastomer_actuator::instance::{Fault, Instance, Message, Type};
 use dielectric_elastomer_actuator::model::variables::{Kind, value_reference};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
 use dielectric_elastomer_actuator::solver::State;
@@ -36,9 +36,9 @@ fn with<T>(act: impl FnOnce(&mut Page) -> T) -> T {
 
 impl Page {
     /// Whether a call went through; what it had to say is kept.
-    fn settle(&mut self, outcome: Result<Option<Event>, Fault>) -> bool {
+    fn settle(&mut self, outcome: Result<Option<Message>, Fault>) -> bool {
         let (went_through, text) = match outcome {
-            Ok(event) => (true, event.map_or(String::new(), |event| event.text)),
+            Ok(message) => (true, message.map_or(String::new(), |message| message.text)),
             Err(fault) => (false, fault.text),
         };
         self.text = text;
@@ -136,9 +136,9 @@ pub extern "C" fn actuator_begin(tolerance: f64) -> bool {
     with(|page| {
         let actuator = &mut page.actuator;
         let outcome = actuator.setup_experiment(Some(tolerance), 0.0, None);
-        let outcome = outcome.and_then(|event| {
+        let outcome = outcome.and_then(|message| {
             actuator.enter_initialization();
-            actuator.exit_initialization().map(|()| event)
+            actuator.exit_initialization().map(|()| message)
         });
         page.settle(outcome)
     })

@@ -8,7 +8,7 @@ use crate::model::variables::rows::{
 };
 use crate::model::variables::{Derivatives, Kind, units};
 use crate::si::Si;
-use crate::si::thresholds::Threshold;
+use crate::si::thresholds::PullIn;
 
 /// A flag as a number.
 fn flag(holds: bool) -> f64 {
@@ -147,7 +147,7 @@ pub(super) const VALUES: [Row; 34] = [
         "static pull-in voltage at the present force, branches relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.threshold(Threshold::Static)),
+        value(|view| view.threshold(PullIn::Static)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -156,7 +156,7 @@ pub(super) const VALUES: [Row; 34] = [
         "pull-in voltage of a step from rest at lambda = 1 without losses; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.threshold(Threshold::Dynamic)),
+        value(|view| view.threshold(PullIn::Dynamic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -165,7 +165,7 @@ pub(super) const VALUES: [Row; 34] = [
         "pull-in voltage of a step from rest with damping and R_s; with Maxwell branches the static one; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.threshold(Threshold::FromRest)),
+        value(|view| view.threshold(PullIn::FromRest)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -174,7 +174,7 @@ pub(super) const VALUES: [Row; 34] = [
         "static pull-in voltage of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.threshold(Threshold::GlassyStatic)),
+        value(|view| view.threshold(PullIn::GlassyStatic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -183,7 +183,7 @@ pub(super) const VALUES: [Row; 34] = [
         "pull-in voltage of a step of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
         positive(),
-        value(|view| view.threshold(Threshold::GlassyDynamic)),
+        value(|view| view.threshold(PullIn::GlassyDynamic)),
         UNDECLARED,
     )
     .in_unit(&units::VOLT),
@@ -192,7 +192,7 @@ pub(super) const VALUES: [Row; 34] = [
         "thickness stretch at V_pull_in_static; 0 where there is no such voltage",
         Local,
         real(0.0, 1e6, 1.0),
-        value(|view| view.thickness_at(Threshold::Static)),
+        value(|view| view.thickness_at(PullIn::Static)),
         UNDECLARED,
     ),
     Row::result(
@@ -200,7 +200,7 @@ pub(super) const VALUES: [Row; 34] = [
         "thickness stretch at V_pull_in_dynamic; 0 where there is no such voltage",
         Local,
         real(0.0, 1e6, 1.0),
-        value(|view| view.thickness_at(Threshold::Dynamic)),
+        value(|view| view.thickness_at(PullIn::Dynamic)),
         UNDECLARED,
     ),
     Row::result(
