@@ -1,4 +1,4 @@
-//! What is recorded, beside the extremes, where the host integrates in steps of its own.
+//! Model exchange: energies and the time of breakdown, recorded over the steps of the host.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +16,7 @@ use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
 pub struct SiAccount {
     /// Energies lost and supplied since the start in J, where they are recorded.
     pub exchanged: [f64; MOST_INTEGRALS],
-    /// When the true field was first seen at breakdown, where the motion goes on there.
+    /// When the true field was first found at breakdown, where breakdown does not end the motion.
     pub breakdown: Option<DoubleDouble>,
     time: DoubleDouble,
     state: SiState,
@@ -142,7 +142,7 @@ impl SiAccount {
         }
     }
 
-    /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
+    /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.
     fn book_step(&mut self, basis: &Basis, state: &SiState, before: f64) {
         let stage = basis.stage(state, state.motion.position);
         let exchanged = basis.local().exchanged_by_step(before, &stage);
@@ -155,8 +155,8 @@ impl SiAccount {
         }
     }
 
-    /// Sums up the powers over the host's step by three Gauss points: each state on the cubic
-    /// through its values and slopes at both ends, each input on the straight line between its own.
+    /// Integrates the powers over the host's step with three Gauss points. Between the ends each state is
+    /// the cubic through its values and slopes there, and each input is linear.
     fn integrate(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         const NODE: f64 = 0.387_298_334_620_741_7; // √15/10
         let mut basis = Basis::of(scene, &self.time, DoubleDouble::ZERO);
@@ -212,7 +212,7 @@ impl SiAccount {
     }
 }
 
-/// The cubic through values and slopes at both ends of a span, at a part of it.
+/// The cubic with these values and slopes at both ends of a span, at this part of the span.
 fn cubic([from, begin]: [f64; 2], [to, end]: [f64; 2], span: f64, part: f64) -> f64 {
     let left = 1.0 - part;
     let growth = part * part * (3.0 - 2.0 * part);
@@ -220,7 +220,8 @@ fn cubic([from, begin]: [f64; 2], [to, end]: [f64; 2], span: f64, part: f64) -> 
 }
 
 impl SiScene {
-    /// What an ideal source was, nondimensional, that finds this charge in C: it charges the actuator from there.
+    /// The nondimensional value from which an ideal source jumps when it meets this charge in C on the
+    /// electrodes.
     pub(super) fn source_before(
         &self,
         scales: &crate::actuator::scales::Scales,

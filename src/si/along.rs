@@ -12,8 +12,8 @@ use crate::model::{Direction, View};
 use crate::solver::coupled::Stage;
 
 impl View<'_, Si> {
-    /// The present as it changes in a direction, exact to rounding. What is given as 0 for "none"
-    /// stays so.
+    /// The present and its derivative in a direction, exact to rounding. A parameter whose 0 means "none" does not
+    /// change from there.
     pub(super) fn sample_along(&self, direction: &Direction<Si>) -> Sample<Dual> {
         let (basis, stage) = self.basis();
         let (scene, change) = (self.scene, &direction.scene);
@@ -41,7 +41,7 @@ impl View<'_, Si> {
             rate: rate * basis.scales.time,
             internal: internal(&basis.device, charge / basis.scales.charge, &dashpots),
         };
-        // Where nothing alternates at present, its amplitude may change from 0.
+        // The direction may change the amplitude of the built-in voltage also where that is 0.
         let angle = basis
             .drive
             .at(&basis.time)

@@ -1,4 +1,4 @@
-//! The actuator in nondimensional numbers, worked out once for each change of what describes it.
+//! The actuator in nondimensional numbers, computed once after each change of its description.
 
 use std::cell::Cell;
 
@@ -6,7 +6,7 @@ use super::SiScene;
 use crate::actuator::device::{Device, Source};
 use crate::actuator::scales::{Scales, SiDevice};
 
-/// What the host has described: the device, J, κ2 and κ3, and the source.
+/// The description that the host gave: the device, J, κ2 and κ3, and the source.
 pub(super) type Described = (SiDevice, [f64; 3], Source);
 
 /// An actuator in nondimensional numbers and their units.
@@ -19,8 +19,8 @@ pub(super) struct Folded {
     pub stack: f64,
 }
 
-/// The last one that was worked out. It follows from the scene and is no part of what that is: all
-/// are equal, and none is saved.
+/// A memory of the last one. It follows from the scene and is not a part of it: any two memories are equal, and
+/// none is saved.
 #[derive(Clone, Debug, Default)]
 pub struct Memory(Cell<Option<Folded>>);
 
@@ -31,7 +31,7 @@ impl PartialEq for Memory {
 }
 
 impl SiScene {
-    /// Whether the actuator is still the one that was described so.
+    /// Whether this is still the description of the actuator.
     pub(super) fn is_still(&self, (device, stiffening, source): &Described) -> bool {
         self.device == *device && self.stiffening == *stiffening && self.source() == *source
     }

@@ -1,5 +1,5 @@
 //! The real actuator in SI units as a [`Model`]: its table of variables and the physics behind
-//! it. The nondimensional core is the one model; `actuator::scales` is the only place with units.
+//! it. The equations are those of the nondimensional core; only `actuator::scales` converts units.
 
 mod account;
 mod along;
@@ -46,7 +46,8 @@ pub enum SiLimit {
     Breakdown,
 }
 
-/// A host finds breakdown to a tolerance: closer than this part of the field it has been reached.
+/// Breakdown counts as reached where the margin is below this part of the breakdown field: a host locates
+/// events to a tolerance.
 const REACHED: f64 = 1e-9;
 
 /// Continuous states: λ, dλ/dt, the charge and three dashpots.
@@ -61,10 +62,9 @@ impl Model for Si {
     const ALIASES: &'static [Alias] = &ALIASES;
     const STATES: &'static [u32] = &variables::states::<Si, STATE_COUNT>(&VARIABLES);
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Si, STATE_COUNT>(&VARIABLES);
-    /// λ − λ_min, λ_max − λ, and how far the true field is below that of breakdown, as a part of
-    /// it.
+    /// λ − λ_min, λ_max − λ, and the margin of the true field to breakdown as a part of the breakdown field.
     const INDICATOR_COUNT: usize = 3;
-    /// Some periods of the actuator of the start values.
+    /// Some periods of the actuator with the start values.
     const EXPERIMENT: DefaultExperiment = DefaultExperiment {
         stop_time: 3e-5,
         step_size: 1e-7,
@@ -171,8 +171,8 @@ impl Model for Si {
         broken.then_some(SiLimit::Breakdown)
     }
 
-    /// Once the motion has ended at one of them, nothing is awaited any more and all stay at 1 or
-    /// λ_max − λ_min; so does that of breakdown where it has been reported.
+    /// Once the motion has ended at a limit, no event is awaited: the indicators stay at λ_max − λ_min and 1.
+    /// The indicator of breakdown stays at 1 once breakdown has been reported.
     fn indicators(view: &View<Si>, indicators: &mut [f64]) {
         let limits = view.scene.limits;
         let stretch = view.state().motion.position;
@@ -231,14 +231,14 @@ impl Model for Si {
     }
 
     fn check_state(view: &View<Si>) -> Result<(), String> {
-        // Not what the motion remembers: the parameters may be others.
+        // The state as such: the motion may have been followed with other parameters.
         let place = Place::of_state(*view.time, view.state());
         let view = View { place, ..*view };
         let read = |row: &u32| VARIABLES[*row as usize].value(&view);
         if view.is_admitted() && Si::DERIVATIVES.iter().all(|row| read(row).is_finite()) {
             return Ok(());
         }
-        // A state that a trial has moved far out, or else all that matters.
+        // The state that lies far out is named, or else all states.
         let far = |row: &&u32| {
             let Kind::Real { nominal, min, .. } = VARIABLES[**row as usize].kind else {
                 return false;
@@ -257,7 +257,7 @@ impl Model for Si {
         view.state()
     }
 
-    /// A charge that becomes a state is that on the electrodes.
+    /// Where the charge becomes a state, it is the charge on the electrodes.
     fn state_tuned_to(view: &View<Si>, scene: &SiScene) -> SiState {
         let [was, is] = [view.scene, scene].map(|scene| scene.folded().device.has_charge_state());
         let mut state = view.state();
@@ -270,7 +270,7 @@ impl Model for Si {
     fn nominal(scene: &SiScene, place: usize) -> f64 {
         let Folded { device, scales, .. } = scene.folded();
         match place {
-            // Of a swing by as much as the actuator is long.
+            // The rate of an oscillation whose amplitude is the length of the actuator.
             1 => (6.0 / (device.sheet.aspect + 2.0)).sqrt() / scales.time,
             2 => scales.charge,
             _ => 1.0,
@@ -286,7 +286,7 @@ impl Model for Si {
     }
 }
 
-/// So many times its typical size is no state that anything could be in.
+/// A state of more than this many times its typical size is not physical.
 const FAR: f64 = 1e30;
 
 const GUID: guid::Text = guid::of::<Si>();

@@ -1,7 +1,7 @@
 //! The motion of the actuator in SI units, from communication point to communication point.
 //!
-//! The clock is in seconds, the motion that is followed in its own unit of time. What a step is
-//! rounded by when it is converted is made up for by the next one: it does not add up.
+//! The clock is in seconds, the trajectory in nondimensional time. The conversion of a step rounds it.
+//! The next step corrects this, so that rounding errors do not add up.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,32 +23,32 @@ use crate::solver::trajectory::{Failure, Progress};
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SiMotion {
     trajectory: SiTrajectory,
-    /// By how much the trajectory is ahead of the clock, nondimensional: what the steps so far were rounded by.
+    /// By how much the trajectory is ahead of the clock, nondimensional: the rounding error of the steps so far.
     lead: f64,
-    /// The last communication step in s, and as a nondimensional one: hosts take many alike.
+    /// The last communication step, in s and nondimensional. Most hosts take equal steps.
     #[serde(skip)]
     converted: (f64, DoubleDouble),
     /// What the trajectory follows, nondimensional.
     motion: DeviceMotion,
     scales: Scales,
     tolerance: f64,
-    /// The actuator as the host has described it; not known of a state that was saved.
+    /// The actuator as the host has described it. It is not saved: after a restore it is unknown.
     #[serde(skip)]
     described: Option<Described>,
-    /// The scene has changed since.
+    /// The scene has changed since the last advance.
     stale: bool,
-    /// The charge at the start, in C, for as long as it is no state.
+    /// The charge at the start in C, which counts where the charge is not a state.
     charge: f64,
     /// The dashpots of absent branches.
     dashpots: [f64; BRANCHES],
     /// When the true field first reached breakdown, in s.
     breakdown: Option<DoubleDouble>,
-    /// The extremes before the trajectory began.
+    /// The extremes before the present trajectory began.
     earlier: Option<Extremes>,
 }
 
 impl SiMotion {
-    /// Where the stretch is counted from, and the stretch from there.
+    /// The origin of the stretch, and the stretch counted from it.
     #[must_use]
     pub fn stretch_from_origin(&self) -> (DoubleDouble, f64) {
         self.trajectory.position_from_origin()
@@ -94,8 +94,8 @@ impl SiMotion {
         }
     }
 
-    /// The present state in SI units in a scene that may have changed since: a charge that has become a state
-    /// is that on the electrodes.
+    /// The present state in SI units in a scene that may have changed since the last advance. Where the charge
+    /// has become a state, it is the charge on the electrodes.
     #[must_use]
     pub fn state_in(&self, scene: &SiScene, time: &DoubleDouble) -> SiState {
         let mut state = self.state();
@@ -115,8 +115,8 @@ impl SiMotion {
         charge * self.scales.charge
     }
 
-    /// The derivative of the charge in A, from its polynomial, where it is a state that has moved under the `source`,
-    /// nondimensional, that the scene has at `time`.
+    /// The derivative of the charge in A, from the polynomial of the last step. None where the charge is not a
+    /// state, or where the nondimensional `source` of the scene at `time` is not that of the last step.
     #[must_use]
     pub fn charging(&self, scene: &SiScene, time: &DoubleDouble, source: f64) -> Option<f64> {
         let SiTrajectory::Coupled(trajectory) = &self.trajectory else {
@@ -130,8 +130,8 @@ impl SiMotion {
         goes_on.then_some(slopes[0] * self.scales.current())
     }
 
-    /// Energies lost and supplied since the start in J, with what an ideal source exchanges at once where the scene
-    /// has changed since; 0 where they are not recorded.
+    /// Energies lost and supplied since the start in J; 0 where they are not recorded. Where an ideal source has
+    /// jumped since the last advance, the energy of the jump is included.
     #[must_use]
     pub fn exchanged(&self, scene: &SiScene, time: &DoubleDouble) -> Exchanged {
         let mut sums = self.trajectory.integrals();
@@ -168,12 +168,12 @@ impl SiMotion {
         self.breakdown
     }
 
-    /// The nondimensional time to which the trajectory has come, the clock being at `time`.
+    /// The nondimensional time of the trajectory when the clock is at `time`.
     fn reached(&self, time: &DoubleDouble) -> DoubleDouble {
         self.scales.time(*time).plus(self.lead)
     }
 
-    /// The present as the motion that is followed sees it, the clock being at `time`.
+    /// Evaluates something at the present, with the equation that is followed; the clock is at `time`.
     fn at_present<T>(
         &self,
         time: &DoubleDouble,
@@ -194,8 +194,8 @@ impl SiMotion {
         described.is_some_and(|described| scene.is_still(described))
     }
 
-    /// Whether the actuator of the scene is the one that is followed. What has no effect does not make it another,
-    /// so that a restored motion, whose description is not known, goes on as the saved one.
+    /// Whether the actuator of the scene is the one that is followed. Nondimensional numbers are compared: a
+    /// parameter without effect does not count, and a restored motion, which has no description, continues.
     fn follows(&self, scene: &SiScene) -> bool {
         let same = self.is_described(scene) || {
             let Folded { device, scales, .. } = scene.folded();
@@ -204,8 +204,8 @@ impl SiMotion {
         same && scene.record_energy == self.motion.records_energy
     }
 
-    /// Follows what the scene has become. Where only inputs have changed, the trajectory goes on
-    /// with what it knows; where the actuator has, it begins anew from the state in SI units.
+    /// Takes over the changed scene. Where only inputs have changed, the trajectory restarts. Where the
+    /// actuator has changed, a new trajectory begins from the present state in SI units.
     fn refold(&mut self, scene: &SiScene, time: &DoubleDouble) {
         self.stale = false;
         if self.follows(scene) {
@@ -241,8 +241,8 @@ impl SiMotion {
         self.book_charging(scene, time, state.charge);
     }
 
-    /// A communication step in s as a nondimensional one, by which the trajectory comes to the clock
-    /// again; and its lead after that.
+    /// The nondimensional step that brings the trajectory to the clock after a communication step in s, and
+    /// the lead that rounding leaves.
     #[inline]
     fn nondimensional(&mut self, step: f64) -> (f64, f64) {
         if step != self.converted.0 {
@@ -310,7 +310,7 @@ impl SiMotion {
         }
     }
 
-    /// Books what an ideal source exchanges that finds this charge, in C, on the electrodes.
+    /// Adds the energy that an ideal source exchanges at once when it meets this charge, in C, on the electrodes.
     fn book_charging(&mut self, scene: &SiScene, time: &DoubleDouble, charge: f64) {
         let capacitance = self.at_present(time, |local, stage| {
             local.capacitance(local.stretch(stage.position))
@@ -319,7 +319,7 @@ impl SiMotion {
         self.book_step(time, before);
     }
 
-    /// Books what a step of an ideal source from this value, nondimensional, exchanges at once.
+    /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.
     fn book_step(&mut self, time: &DoubleDouble, before: f64) {
         if !self.motion.records_energy {
             return;
@@ -424,9 +424,9 @@ mod tests {
     use super::*;
     use crate::model::Model;
 
-    /// Each is rounded by up to 1e-16 of it, their sum by no more.
+    /// Each conversion has a relative error of up to 1e-16, and their sum has no more.
     #[test]
-    fn what_converted_steps_are_rounded_by_does_not_add_up() {
+    fn rounding_errors_of_converted_steps_do_not_add_up() {
         let scene = Si::at_start();
         for step in [1e-9, 6.1e-7, 1.0 / 3.0] {
             let mut motion = SiMotion::begin(&scene, &DoubleDouble::ZERO, 1e-9);

@@ -1,5 +1,5 @@
-//! The quantities that follow from the state and the inputs by formulas, in SI units, each
-//! written once for plain numbers, for numbers that change in a direction, and for series in time.
+//! The quantities that follow from the state and the inputs by formulas, in SI units. Each formula is
+//! written once. It gives values, directional derivatives (dual numbers) and time derivatives (power series).
 
 use super::Si;
 use super::scene::{BRANCHES, SiScene, SiState, internal};
@@ -19,7 +19,7 @@ macro_rules! sample {
         of the motion { $($(#[$of:meta])* $moved:ident,)* }
         of everything { $($(#[$about:meta])* $name:ident,)* }
     ) => {
-        /// The distances and rates at one time, of the stretch and its rate alone.
+        /// The quantities that depend on the stretch and its rate alone.
         struct Geometry<N> {
             $($placed: N,)*
             $($moved: N,)*
@@ -39,7 +39,7 @@ macro_rules! sample {
             })*
         }
 
-        /// The actuator at one time, as numbers that may carry their derivatives along.
+        /// All quantities at one time, as numbers that may carry derivatives.
         #[derive(Clone, Copy, Debug)]
         pub struct Sample<N> {
             $($(#[$at])* pub $placed: N,)*
@@ -157,7 +157,7 @@ impl<N: Number> Geometry<N> {
     }
 }
 
-/// What a sample is computed with.
+/// What a sample is computed from.
 pub(super) struct Basis<P = f64> {
     /// The thickness of the stack before deformation, in m.
     pub stack: P,
@@ -166,7 +166,7 @@ pub(super) struct Basis<P = f64> {
     pub drive: crate::actuator::Drive,
     /// Time of the model, nondimensional.
     pub time: DoubleDouble,
-    /// Where the stretch is counted from.
+    /// The origin of the stretch.
     pub origin: DoubleDouble,
 }
 
@@ -217,9 +217,9 @@ impl<P: Parameter> Basis<P> {
         LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
     }
 
-    /// The sample at a stage. `source_rate` is the derivative of what the source imposes;
-    /// `charging` that of the charge, where it is known better than by its equation; `states` the
-    /// charge and the dashpots, of which those count that are no states of the stage.
+    /// The sample at a stage. `source_rate` is the derivative of what the source imposes. `charging` is the
+    /// derivative of the charge, where it is known more accurately than from its equation. `states` are the charge
+    /// and the dashpots; those that are states of the stage are taken from there.
     pub fn sample<N: Number>(
         &self,
         load: Load<N>,
@@ -336,7 +336,7 @@ impl View<'_, Si> {
         Geometry::of(position, rate, device.side, stack)
     }
 
-    /// The geometry without the rates, which take as long to find out.
+    /// The geometry without the rates, whose evaluation would double the time.
     #[inline(always)]
     fn placed(&self) -> Geometry<f64> {
         self.geometry(State {
@@ -357,12 +357,11 @@ impl View<'_, Si> {
         basis.sample(load, rate, &stage, charging, (self.is_held(), states))
     }
 
-    /// The motion from now on as power series in the time in s, right up to the derivatives of
-    /// `order`.
+    /// The motion from now on as power series of the time in s. Derivatives up to `order` are exact.
     pub(super) fn series(&self, order: usize) -> Sample<TimeSeries> {
         let (basis, stage) = self.basis();
         let local = basis.local();
-        // Of the nondimensional offset from now on; in seconds it runs by 1/t0.
+        // In the nondimensional time from now on; a second is 1/t0 of its units.
         let offset = TimeSeries::variable();
         let load = basis.load(offset);
         let mut series = Stage {

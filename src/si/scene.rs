@@ -56,14 +56,15 @@ pub struct SiScene {
     pub on_pull_in: AtLimit,
     /// What happens at breakdown.
     pub on_breakdown: OnBreakdown,
-    /// Whether extremes are recorded, and the number of their window.
+    /// Whether extremes are recorded.
     pub record_extremes: bool,
-    /// A changed number starts them anew.
+    /// The number of the window over which extremes are recorded. A changed number begins a new window;
+    /// with any number but 0 they are recorded.
     pub extremes_window: f64,
-    /// Whether energies supplied and lost are summed up.
+    /// Whether supplied and lost energies are recorded.
     pub record_energy: bool,
-    /// What the source imposes, for hosts that set numbers only: 0 leaves it to the enumeration,
-    /// 1, 2, 3 are voltage, current, charge.
+    /// What the source imposes, for hosts that set real numbers only: 1, 2, 3 are voltage, current, charge;
+    /// 0 leaves it to the enumeration.
     pub source_number: f64,
     /// Time in s at which the inputs were set.
     pub since: DoubleDouble,
@@ -73,15 +74,15 @@ pub struct SiScene {
     pub force: Polynomial,
     /// Amplitude in V, frequency in Hz and phase in rad of the built-in alternating voltage.
     pub alternating: [f64; 3],
-    /// By how much its angle is ahead, in rad, since the frequency was changed on the way.
+    /// What is added to its angle, in rad, so that a change of frequency during the run keeps the phase.
     pub lead: f64,
-    /// [`SiScene::on_pull_in`] for hosts that set numbers only: 0 leaves it to that, 1 is
-    /// [`AtLimit::Terminate`].
+    /// [`SiScene::on_pull_in`] for hosts that set real numbers only: 1 is [`AtLimit::Terminate`], 0 leaves it to
+    /// the enumeration.
     pub terminate_on_pull_in: f64,
-    /// [`SiScene::on_breakdown`] for hosts that set numbers only: 0 leaves it to that, 1, 2, 3 are
-    /// flag, hold, terminate.
+    /// [`SiScene::on_breakdown`] for hosts that set real numbers only: 1, 2, 3 are flag, hold, terminate; 0
+    /// leaves it to the enumeration.
     pub on_breakdown_number: f64,
-    /// Pull-in voltages that are known.
+    /// Pull-in voltages that have been computed.
     #[serde(skip)]
     pub thresholds: Thresholds,
     /// The actuator in nondimensional numbers.
@@ -166,8 +167,8 @@ impl SiScene {
         }
     }
 
-    /// Gives the built-in voltage another frequency in Hz from now on, the time from which the
-    /// inputs count; its phase runs on from where it is.
+    /// Changes the frequency of the built-in voltage, in Hz, at the time at which the inputs were set. Its phase
+    /// stays continuous.
     pub fn retune(&mut self, frequency: f64) {
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = self.since;
@@ -184,7 +185,7 @@ impl SiScene {
         &self.sources[place(self.source())]
     }
 
-    /// The actuator as it is described, what is given as 0 for "none" left out.
+    /// The actuator as it is described. Where 0 means "none", the number becomes one without effect.
     #[must_use]
     pub fn described(&self) -> SiDevice {
         described(self.device, self.source(), self.stiffening)
@@ -245,7 +246,7 @@ impl SiScene {
     }
 }
 
-/// A device with this source and J, κ2, κ3; what is given as 0 for "none" left out.
+/// A device with this source and J, κ2, κ3. Where 0 means "none", the number becomes one without effect.
 pub(super) fn described<P: Parameter>(
     mut device: SiDevice<P>,
     source: Source,
@@ -275,7 +276,7 @@ pub(super) fn described<P: Parameter>(
     device
 }
 
-/// An input in other units: its value times `value`, of a time counted in units of `time`.
+/// An input in other units: its value is multiplied by `value`, and its time is counted in units of `time`.
 fn scaled(input: &Polynomial, value: f64, time: f64) -> Polynomial {
     if input.is_constant() {
         return Polynomial::constant(value * input.value());

@@ -1,5 +1,5 @@
-//! How a motion in SI units is followed in nondimensional numbers: as the paper's equation where
-//! it is that, or as that of a real actuator.
+//! A nondimensional trajectory of either kind: of the paper's equation, where the actuator is described by it,
+//! or of a coupled system.
 
 use serde::{Deserialize, Serialize};
 
@@ -50,8 +50,7 @@ impl SiTrajectory {
         }
     }
 
-    /// Makes a new motion in place of this one: only where the motion becomes one of the other kind is
-    /// memory allocated.
+    /// Begins a new motion in place of this one. A coupled system keeps its memory.
     pub fn begin_anew(
         &mut self,
         scene: &SiScene,
@@ -76,7 +75,7 @@ impl SiTrajectory {
         matches!(self, SiTrajectory::Plain(_))
     }
 
-    /// Where the stretch is counted from, and the stretch from there.
+    /// The origin of the stretch, and the stretch counted from it.
     pub fn position_from_origin(&self) -> (DoubleDouble, f64) {
         match self {
             SiTrajectory::Plain(trajectory) => (DoubleDouble::ZERO, trajectory.position()),
@@ -108,7 +107,7 @@ impl SiTrajectory {
         }
     }
 
-    /// Adds energies that are exchanged at once.
+    /// Adds energies that were exchanged at once.
     pub fn book(&mut self, exchanged: &[f64; MOST_INTEGRALS]) {
         if let SiTrajectory::Coupled(trajectory) = self {
             trajectory.jump(&[0.0; MOST_STATES], exchanged);
@@ -127,15 +126,15 @@ impl SiTrajectory {
         either!(self, trajectory => trajectory.restart());
     }
 
-    /// Follows the motion for a nondimensional time where it stays in its step and meets nothing;
-    /// tells whether it does.
+    /// Follows the motion for a nondimensional time if it stays in its step and meets no event. Returns
+    /// whether it does.
     #[inline]
     pub fn advance_inside_step(&mut self, step: f64) -> bool {
         either!(self, trajectory => trajectory.advance_inside_step(step))
     }
 
-    /// Follows it, and its clock with it, where [`SiTrajectory::advance_inside_step`] has told that it leaves
-    /// its step.
+    /// Follows the motion beyond its step, and moves the clock, after [`SiTrajectory::advance_inside_step`] has
+    /// returned false.
     pub fn advance_beyond_step(
         &mut self,
         motion: &DeviceMotion,

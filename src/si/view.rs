@@ -1,5 +1,4 @@
-//! What a host can read at the present beside the quantities of a sample: energies, thresholds,
-//! margins, extremes.
+//! What a host reads beside the quantities of a sample: energies, thresholds, margins, extremes.
 
 use super::sample::Basis;
 use super::scene::SiScene;
@@ -15,8 +14,8 @@ use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 
 impl View<'_, Si> {
-    /// The limit at which the actuator is held. Where the simulation ends instead, the state on
-    /// arrival remains.
+    /// The limit at which the actuator is held. None where the simulation ends there instead: the host then
+    /// reads the state of arrival.
     fn held(&self) -> Option<SiLimit> {
         let limit = self.collapse?.limit;
         (Si::at_limit(self.scene, limit) == AtLimit::Hold).then_some(limit)
@@ -81,7 +80,7 @@ impl View<'_, Si> {
         (basis, stage)
     }
 
-    /// The derivative of the charge in A, where it is known from the motion under this source, nondimensional.
+    /// The derivative of the charge in A, where the motion knows it under this nondimensional source.
     pub(super) fn charging(&self, source: f64) -> Option<f64> {
         match self.place {
             Place::On(motion) if !self.is_held() => motion.charging(self.scene, self.time, source),
@@ -100,7 +99,7 @@ impl View<'_, Si> {
         of(self.scene).at(self.time.since(self.scene.since))
     }
 
-    /// What is stored, in J.
+    /// The stored energies in J.
     #[must_use]
     pub fn stored(&self) -> Stored {
         let (basis, stage) = self.basis();
@@ -116,7 +115,7 @@ impl View<'_, Si> {
         }
     }
 
-    /// What was lost and supplied since the start, in J; 0 where it is not recorded.
+    /// The energies lost and supplied since the start in J; 0 where they are not recorded.
     #[must_use]
     pub fn exchanged(&self) -> Exchanged {
         match self.place {
@@ -125,7 +124,7 @@ impl View<'_, Si> {
         }
     }
 
-    /// What is lost at present, in W.
+    /// The power that is lost at present, in W.
     #[must_use]
     pub fn lost_power(&self) -> f64 {
         let (basis, stage) = self.basis();
@@ -193,10 +192,10 @@ impl View<'_, Si> {
 }
 
 impl SiScene {
-    /// Why the actuator cannot begin as it is described, if it cannot.
+    /// Checks that the described actuator has a motion from its start.
     ///
     /// # Errors
-    /// A message with the values that do not go together, and which to change.
+    /// A message with the values that exclude each other, and which of them to change.
     pub(super) fn check(&self) -> Result<(), String> {
         let State { position, .. } = self.start.motion;
         let limits = self.limits;
@@ -295,8 +294,8 @@ impl SiScene {
 }
 
 impl SiScene {
-    /// Refuses a voltage, a charge or a force that is far beyond what the actuator can bear: a wrong power
-    /// of ten, there or in its geometry and modulus.
+    /// Refuses a voltage, a charge or a force far beyond what the actuator can bear. Most likely the power of
+    /// ten is wrong, of this value or of the geometry or the modulus.
     fn check_size(&self, scales: &Scales) -> Result<(), String> {
         let voltage = self.sources[0].value().abs() + self.alternating[0].abs();
         let ideal = self.source() == Source::Voltage && self.device.series_resistance == 0.0;
@@ -349,7 +348,7 @@ impl SiScene {
 }
 
 impl SiScene {
-    /// Refuses a conductivity that grows beyond all bounds in the field of the supply voltage.
+    /// Refuses a conductivity that overflows in the field of the supply voltage.
     fn check_leak(&self) -> Result<(), String> {
         let (limit, voltage) = (self.device.conduction_field, self.sources[0].value());
         let field = voltage.abs() / self.device.thickness;

@@ -1,4 +1,4 @@
-//! Energies of a real actuator and the powers that change them, in units of E0.
+//! Stored energies of a real actuator, in units of E0, and the powers that change them.
 //!
 //! ```text
 //! kinetic M λ'²    elastic ½I, −½J ln(1 − I/J), ½(I + κ2 I² + κ3 I³)
@@ -8,7 +8,7 @@
 //! supplied: φ_s i (by a current source (φ_m + r_s i) i),  2Sλ'
 //! ```
 //!
-//! The sum of what is stored, less what is supplied, plus what is lost, is constant.
+//! Stored energy, minus supplied energy, plus lost energy is constant.
 
 use super::elasticity::{Elasticity, invariant};
 use super::equation::{Load, LocalDevice, Powers};
@@ -16,10 +16,10 @@ use super::parameters::Source;
 use crate::arithmetic::jet::Dual;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};
 
-/// An energy smaller than this, in units of E0, is not resolved relative to itself.
+/// Smallest size of the energies, in units of E0: a smaller energy is resolved relative to this.
 const SMALL_ENERGY: f64 = 1e-9;
 
-/// What is stored, in units of E0.
+/// Stored energies in units of E0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stored {
     /// Of the motion, a load mass included.
@@ -37,14 +37,14 @@ pub struct Stored {
 }
 
 impl Stored {
-    /// All of it.
+    /// Their sum.
     #[must_use]
     pub fn total(&self) -> f64 {
         self.kinetic + self.elastic + self.surface + self.spring + self.branches + self.electric
     }
 }
 
-/// What is lost and supplied: per time, or summed up since the start.
+/// Losses and supply: powers, or energies since the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Exchanged {
     /// Lost by viscous damping.
@@ -89,7 +89,7 @@ impl Exchanged {
         }
     }
 
-    /// Supplied less lost: what the stored energy has gained.
+    /// Supply minus losses: the gain of the stored energy.
     #[must_use]
     pub fn gain(&self) -> f64 {
         let lost = self.damping + self.branches + self.series + self.leakage;
@@ -98,7 +98,7 @@ impl Exchanged {
 }
 
 impl LocalDevice<'_> {
-    /// What is stored at `offset` after the origin of time.
+    /// The stored energies at `offset` after the origin of time.
     #[must_use]
     pub fn stored(&self, offset: f64, stage: &Stage) -> Stored {
         let device = self.device;
@@ -109,7 +109,7 @@ impl LocalDevice<'_> {
             Elasticity::NeoHookean => 0.5 * i,
             Elasticity::Gent(locking) => {
                 let gap = self.gap(locking, stage.position);
-                // Near 1 the logarithm needs its argument less 1.
+                // ln(1 + x) is accurate for small x.
                 let logarithm = if gap > 0.5 {
                     (-i / locking.limit()).ln_1p()
                 } else {
@@ -175,7 +175,7 @@ impl LocalDevice<'_> {
         voltage * self.conductance(voltage, stretch * stretch)[0]
     }
 
-    /// What is lost and supplied per time at `offset`, where z' has these `slopes`.
+    /// The powers of losses and supply at `offset`, where z' has these `slopes`.
     #[must_use]
     pub fn powers_at(&self, offset: f64, stage: &Stage, slopes: &[f64; MOST_STATES]) -> Exchanged {
         let device = self.device;
@@ -204,9 +204,8 @@ impl LocalDevice<'_> {
         }
     }
 
-    /// What an ideal source exchanges at once where it has been stepped here from `previous`,
-    /// in units of E0. To charge a capacitance C by a step ∆V costs C∆V²/2 in the resistance,
-    /// however small that is.
+    /// The energies, in units of E0, that an ideal source exchanges at once when it jumps from `previous` to its
+    /// present value. A jump ∆V at a capacitance C loses C∆V²/2 in the resistance, however small that is.
     #[must_use]
     pub fn exchanged_by_step(&self, previous: f64, stage: &Stage) -> Exchanged {
         let mut exchanged = Exchanged::from_integrals(&[0.0; MOST_INTEGRALS]);
@@ -228,7 +227,7 @@ impl LocalDevice<'_> {
         exchanged
     }
 
-    /// How far the true field is below that of breakdown; infinite where none is given.
+    /// The breakdown field minus the true field; infinite where no breakdown field is given.
     #[must_use]
     pub fn breakdown_margin(&self, load: &Load, stage: &Stage) -> f64 {
         let Some(breakdown) = &self.device.breakdown else {
@@ -239,7 +238,7 @@ impl LocalDevice<'_> {
         breakdown.field * stretch.powf(breakdown.exponent) - field.abs()
     }
 
-    /// The size of the energies around a stage.
+    /// The typical size of the energies around a stage.
     pub(super) fn energy_size(&self, stage: &Stage, charge: f64, frequency: f64) -> f64 {
         let stored = self.stored(0.0, stage);
         let capacitance = self.capacitance(self.stretch(stage.position));
@@ -250,13 +249,13 @@ impl LocalDevice<'_> {
             }
             _ => 0.5 * charge * charge / capacitance,
         };
-        // What the forces at this stage may still do.
+        // The kinetic energy that the forces at this stage may give.
         let [force, inertia, _] = self.forces(&self.load(0.0), stage);
         let swing = force / frequency;
         stored.total() + electric + swing * swing / inertia + SMALL_ENERGY
     }
 
-    /// The voltage at the membrane, or what it may be for a while.
+    /// The largest voltage at the membrane now or in the near future.
     pub(super) fn largest_membrane_voltage(&self, stage: &Stage) -> f64 {
         let load = self.load(0.0);
         let present = self.membrane_voltage(&load, stage).abs();

@@ -22,7 +22,7 @@ use crate::arithmetic::jet::Dual;
 use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 use crate::solver::coupled::{MOST_STATES, Slope, Stage};
 
-/// What the drive gives at a time, or at lanes of times.
+/// The drive at one time, or at lanes of times.
 #[derive(Clone, Copy, Debug)]
 pub struct Load<N = f64> {
     /// The voltage, current or charge of the source.
@@ -222,8 +222,7 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
         fourth * self.device.permittivity.at(stretch)[0]
     }
 
-    /// The conductance of all leaks together, and its derivative by the voltage times the
-    /// voltage.
+    /// The leakage conductance G, and V dG/dV.
     #[inline(always)]
     pub fn conductance<N: Number>(&self, voltage: N, square: N) -> [N; 2]
     where
@@ -343,9 +342,9 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
 }
 
 impl LocalDevice<'_> {
-    /// The angular frequency of small oscillations around a stage, nothing else moving: under a
-    /// source of voltage the voltage at the membrane is held, under one of current or charge the
-    /// charge, and the dashpots of the branches stand. 0 where the stage is unstable.
+    /// The angular frequency of small oscillations around a stage; 0 where the stage is unstable. A source of
+    /// voltage holds the voltage at the membrane, a source of current or charge holds the charge, and the
+    /// dashpots do not move.
     #[must_use]
     pub fn small_signal_frequency(&self, load: &Load, stage: &Stage) -> f64 {
         let fixed = |value: f64| Dual::constant(value);

@@ -1,4 +1,4 @@
-//! A real actuator under a drive as a system that the integrator follows.
+//! A real actuator under a drive, as a system for the integrator.
 
 use serde::{Deserialize, Serialize};
 
@@ -12,34 +12,35 @@ use crate::solver::coupled::{
     CoupledEquation, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Slope, Stage,
 };
 
-/// Nearer to a locking stretch than this part of it, the stretch is counted from there.
+/// Closer to a locking stretch than this part of it, that stretch becomes the origin.
 const NEAR_WALL: f64 = 0.2;
 
-/// And farther than this part no more.
+/// The origin moves back to 0 beyond this part of it.
 const FAR_FROM_WALL: f64 = 0.3;
 
-/// A charge smaller than this, in units of Q0, is not resolved relative to itself.
+/// Smallest size of a charge, in units of Q0: a smaller charge is resolved relative to this.
 const SMALL_CHARGE: f64 = 1e-4;
 
-/// A real actuator under a drive, whose voltage stands for whatever the source imposes.
+/// A real actuator under a drive. The voltage of the drive is what the source imposes: voltage, current or
+/// charge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DeviceMotion {
     /// The actuator.
     pub device: Device,
     /// The source and the prestress.
     pub drive: Drive,
-    /// Whether energies supplied and lost are summed up (see [`super::energy`]).
+    /// Whether supplied and lost energies are integrated (see [`super::energy`]).
     pub records_energy: bool,
 }
 
 impl DeviceMotion {
-    /// Whether it is the motion of the paper's equation, and nothing is summed up along it.
+    /// Whether the paper's equation describes the motion, and no energies are integrated.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.device.is_plain() && !self.records_energy
     }
 
-    /// The motion of the paper's equation that it is, where it is one.
+    /// The motion by the paper's equation; of use where [`DeviceMotion::is_plain`].
     #[must_use]
     pub fn plain(&self) -> Motion {
         let mut drive = self.drive;
@@ -174,8 +175,8 @@ impl LocalCoupledEquation for LocalDevice<'_> {
         2.0 * self.drive.frequency()
     }
 
-    /// √(stiffness/inertia) with the terms of the stiffness added up by size, and the rate of
-    /// approach to a singularity.
+    /// √(stiffness/inertia), plus the relative rate at which the motion approaches a singularity. The terms of
+    /// the stiffness are added by absolute value.
     fn natural_frequency(&self, stage: &Stage) -> f64 {
         let device = self.device;
         let p = Powers::of(self.stretch(stage.position));
@@ -236,7 +237,7 @@ impl LocalCoupledEquation for LocalDevice<'_> {
         }
     }
 
-    /// The stretch, or the distance from where the material locks.
+    /// The stretch, or the distance to a locking stretch where that is less.
     fn size_of(&self, position: f64) -> f64 {
         let [largest, smallest] = self.walls();
         self.stretch(position)

@@ -1,6 +1,6 @@
-//! What describes a real actuator: the sheet of the paper with a load, losses, stiffening and an
-//! electrical port. Everything is nondimensional, in the units of [`super::super::scales`], and
-//! off by default.
+//! The parameters of a real actuator: the sheet of the paper with a load, losses, stiffening and an
+//! electrical port. All numbers are nondimensional, in the units of [`super::super::scales`]. By default nothing
+//! is added to the sheet.
 
 use serde::{Deserialize, Serialize};
 
@@ -107,7 +107,7 @@ pub struct Breakdown<P = f64> {
 }
 
 impl Device {
-    /// The actuator of the paper: nothing beside the sheet, an ideal source of voltage.
+    /// The actuator of the paper: the sheet alone, with an ideal voltage source.
     #[must_use]
     pub const fn plain(sheet: Parameters) -> Device {
         Device {
@@ -131,8 +131,8 @@ impl Device {
         }
     }
 
-    /// Whether the motion is that of the paper's equation with a load mass and a spring folded
-    /// into its coefficients and the prestress, [`Device::folded`] and [`Spring::preload`].
+    /// Whether the paper's equation describes the motion. A load mass and a spring may be there: they are
+    /// folded into its coefficients ([`Device::folded`]) and the prestress ([`Spring::preload`]).
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.elasticity == Elasticity::NeoHookean
@@ -146,7 +146,7 @@ impl Device {
 }
 
 impl<P: Parameter> Device<P> {
-    /// The coefficients of Eq. 16, the spring folded in.
+    /// The coefficients of Eq. 16 with the spring.
     #[must_use]
     pub fn folded(&self) -> Coefficients<P> {
         let mut folded = Coefficients::fold(&self.sheet);
@@ -154,7 +154,7 @@ impl<P: Parameter> Device<P> {
         folded
     }
 
-    /// Whether the charge is a state: it neither follows from the voltage nor is imposed.
+    /// Whether the charge is a state: it does not follow from the voltage, and the source does not impose it.
     #[must_use]
     pub fn has_charge_state(&self) -> bool {
         match self.port.source {
@@ -173,7 +173,7 @@ impl<P: Parameter> Device<P> {
 }
 
 impl<P: Parameter> Spring<P> {
-    /// k̄l̄, what it adds to the prestress.
+    /// k̄l̄, its contribution to the prestress.
     #[must_use]
     pub fn preload(&self) -> P {
         self.stiffness * self.rest
@@ -181,7 +181,7 @@ impl<P: Parameter> Spring<P> {
 }
 
 impl Source {
-    /// What it imposes, in a word.
+    /// The name of what it imposes.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -193,7 +193,7 @@ impl Source {
 }
 
 impl Permittivity {
-    /// The stretches at which e has an extreme; those that do not exist are not numbers.
+    /// The stretches at which e has an extreme; NaN for one that does not exist.
     #[must_use]
     pub fn extremes(&self) -> [f64; 2] {
         let [k1, k2, k3] = self.terms;
@@ -206,7 +206,7 @@ impl Permittivity {
 }
 
 impl<P: Parameter> Permittivity<P> {
-    /// Whether it keeps its value.
+    /// Whether it does not depend on the stretch.
     #[must_use]
     pub fn is_constant(&self) -> bool {
         self.terms.iter().all(|term| term.is_nothing())
@@ -214,13 +214,13 @@ impl<P: Parameter> Permittivity<P> {
 }
 
 impl Damping {
-    /// Nothing is lost.
+    /// No losses.
     pub const NONE: Damping = Damping {
         linear: 0.0,
         viscosity: 0.0,
     };
 
-    /// Whether nothing is lost.
+    /// Whether there are no losses.
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Damping::NONE
