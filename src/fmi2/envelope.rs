@@ -1,5 +1,5 @@
-//! What a serialized state travels in: a header that says what it is, and a
-//! checksum. Numbers are little-endian.
+//! The bytes around a serialized state: a header that identifies it, and a checksum. Numbers are
+//! little-endian.
 //!
 //! ```text
 //! "DEA state", layout (u16), GUID (38 characters), length (u32), CRC-32 (u32), the saved instance

@@ -1,9 +1,8 @@
 //! The floating-point environment of the calling thread: rounding mode, flush to zero, traps and
 //! exception flags. It belongs to the host.
 //!
-//! Compiled Rust is right in the default environment only (rounding to nearest, subnormal numbers
-//! kept, no traps). A call therefore runs in that one, and the host finds its own as it left it,
-//! its flags included.
+//! Compiled Rust is correct only in the default environment (rounding to nearest, subnormal numbers
+//! kept, no traps). A call therefore runs in the default one, and then restores the host's, with its flags.
 //!
 //! On processors other than x86-64 and 64-bit Arm nothing is done.
 
@@ -28,7 +27,7 @@ impl FloatEnvironment {
 impl Drop for FloatEnvironment {
     #[inline(always)]
     fn drop(&mut self) {
-        // Not compared with what is there: to read takes ten times as long as to write.
+        // Written without a comparison: reading takes ten times as long as writing.
         register::write(self.found);
     }
 }

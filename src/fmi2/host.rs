@@ -1,4 +1,4 @@
-//! The host of an instance, and what it is told: statuses and lines for its log.
+//! The host of an instance: its logger, and the statuses that calls return.
 
 use std::ffi::{CStr, CString};
 
@@ -15,7 +15,7 @@ const EVENTS: usize = 0;
 const WARNINGS: usize = 1;
 const ERRORS: usize = 2;
 
-/// The host's side: who is told what.
+/// The logger of a host and the categories that are switched on.
 pub struct Host {
     /// Copied by value: hosts may free or reuse the structure that they passed.
     callbacks: fmi2CallbackFunctions,
@@ -88,7 +88,7 @@ impl Host {
         }
     }
 
-    /// Tells the host why a call was not done, and gives its status.
+    /// Logs why a call was not done, and gives its status.
     #[cold]
     pub fn refuse(&self, function: &str, fault: Fault) -> fmi2Status {
         let (status, category) = match fault.severity {
@@ -100,7 +100,7 @@ impl Host {
         status
     }
 
-    /// Tells the host of something in a call that was done, and gives its status.
+    /// Logs a message of a call that succeeded, and gives its status.
     #[cold]
     pub fn announce(&self, function: &str, message: Message) -> fmi2Status {
         let (status, category) = if message.warning {

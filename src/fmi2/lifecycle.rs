@@ -155,8 +155,8 @@ pub unsafe extern "C" fn fmi2Reset<M: Model>(c: fmi2Component) -> fmi2Status {
     })
 }
 
-/// The component of an instance that `make` makes, or null: the one way into an
-/// instance's life. No panic leaves it.
+/// The component of the instance that `make` returns, or null. Every instance is created here. No panic leaves
+/// it.
 fn instantiated<M: Model>(
     host: Host,
     make: impl FnOnce() -> Result<Instance<M>, Fault>,
@@ -170,9 +170,9 @@ fn instantiated<M: Model>(
     }
 }
 
-/// Frees what a host has had, and the way out. No panic leaves it.
+/// Frees something that the host owned. No panic leaves it.
 fn free<T>(owned: Box<T>) {
-    // Nobody is left who could be told.
+    // There is no host left to report a panic to.
     contained(|| drop(owned), |_| ());
 }
 
@@ -241,7 +241,7 @@ mod tests {
         assert!(state.is_null());
     }
 
-    /// What panics while it is made is a fatal fault, and no component.
+    /// A panic during instantiation is a fatal fault, and there is no component.
     #[test]
     fn a_panic_in_making_an_instance_leaves_none() {
         let panics =

@@ -67,7 +67,7 @@ struct Component<M: Model> {
     host: Host,
 }
 
-/// Runs `body`; a panic in it goes no further, and becomes what `failed` makes of a fatal fault.
+/// Runs `body`. A panic in it is caught, and the result is then that of `failed` for a fatal fault.
 #[inline(always)]
 fn contained<T>(body: impl FnOnce() -> T, failed: impl FnOnce(Fault) -> T) -> T {
     catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| {
@@ -79,7 +79,7 @@ fn contained<T>(body: impl FnOnce() -> T, failed: impl FnOnce(Fault) -> T) -> T 
     })
 }
 
-/// Runs `body` in the default floating-point environment, the host's put back after it.
+/// Runs `body` in the default floating-point environment, and restores the host's after it.
 #[inline(always)]
 fn computing<T>(body: impl FnOnce() -> T) -> T {
     let _environment = FloatEnvironment::entered();
@@ -101,7 +101,7 @@ fn guarded<M: Model>(
 /// What a call does, as one type for all calls.
 type Body<'a, M> = &'a mut dyn FnMut(&mut Component<M>) -> Result<Option<Message>, Fault>;
 
-/// [`guarded`] for all calls of a model: once in the binary.
+/// [`guarded`] for most calls of a model: not inlined, so that the binary has it once.
 #[inline(never)]
 fn guarded_call<M: Model>(
     component: fmi2Component,
@@ -112,7 +112,7 @@ fn guarded_call<M: Model>(
     guarded_in_place(component, function, call, body)
 }
 
-/// [`guarded`], the guard being compiled into the caller: for calls that must be fast.
+/// [`guarded`], inlined: for calls that must be fast.
 #[inline(always)]
 fn guarded_in_place<M: Model>(
     component: fmi2Component,
@@ -127,7 +127,7 @@ fn guarded_in_place<M: Model>(
     if let Err(fault) = call.check(&component.instance) {
         return component.host.refuse(function, fault);
     }
-    // Boxed, so that a call that has nothing to tell hands no large result on.
+    // Boxed, so that the usual result, which is nothing, is small.
     let body = || match body(component) {
         Ok(None) => None,
         told => Some(Box::new(told)),
@@ -155,9 +155,9 @@ impl<M: Model> Component<M> {
     }
 }
 
-/// Does a call without any arithmetic, where `at_once` can: it compares and copies only, and
-/// cannot panic. It runs in the host's floating-point environment, which costs more to find out
-/// than such a call takes. Returns whether the call is done; if not, nothing has changed.
+/// Does a call by `at_once`, if that can. `at_once` compares and copies only, and cannot panic. It runs in the
+/// host's floating-point environment: changing that takes longer than such a call. Returns whether the call
+/// is done; if not, nothing has changed.
 #[inline(always)]
 fn done_at_once<M: Model>(
     component: fmi2Component,
@@ -328,7 +328,8 @@ pub unsafe extern "C" fn fmi2GetReal<M: Model>(
     unsafe { get_real::<M>(c, vr, nvr, value) }
 }
 
-/// [`fmi2GetReal`] where something is to be worked out. Of C, so that it is jumped to, not called.
+/// [`fmi2GetReal`] where a result must be computed. It has the C calling convention, so that the compiler makes
+/// a jump of its call.
 #[inline(never)]
 unsafe extern "C" fn get_real<M: Model>(
     c: fmi2Component,

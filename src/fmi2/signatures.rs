@@ -6,7 +6,7 @@ use fmi::fmi2::binding::*;
 use super::*;
 use crate::nondimensional::Nondimensional;
 
-/// Hands the list to a macro, with what else that macro is to be given.
+/// Calls a macro with the list and further arguments.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! fmi2_functions {

@@ -1,4 +1,4 @@
-//! The functions that get and set variables other than step by step, and those of derivatives.
+//! The functions that get and set variables but for `fmi2SetReal` and `fmi2GetReal`, and those of derivatives.
 
 use fmi::fmi2::binding::*;
 

@@ -92,10 +92,9 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// The change of the `unknowns` where the `knowns` (inputs, parameters and,
-    /// after initialization, states) change by the `changes` in their places:
-    /// Σ ∂unknown/∂known · change, exact to rounding, passed to `store` with
-    /// its place. A start value has an effect in initialization mode only.
+    /// The directional derivatives Σ ∂unknown/∂known · change of the `unknowns`, exact to rounding, each passed to
+    /// `store` with its place. The `knowns` are inputs, parameters and, after initialization, states; `changes`
+    /// has one number for each. A start value has an effect in initialization mode only.
     ///
     /// # Errors
     /// Error for an unknown reference, an unknown without a derivative, a known
@@ -127,8 +126,7 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// The direction in which the `knowns` change as given: a scene and a state
-    /// filled in by the setters of the table.
+    /// The direction of these changes: a scene and a state into which the setters of the table write them.
     fn direction(&self, knowns: &[u32], changes: &[f64]) -> Result<Direction<M>, Fault> {
         let mut direction = Direction {
             state: M::start(&M::blank()),
@@ -143,7 +141,7 @@ impl<M: Model> Instance<M> {
                     let input = of(&mut direction.scene);
                     input.set_value(input.value() + change);
                 }
-                // What has an effect on the future only.
+                // It has an effect on the future only.
                 (
                     Access::Setting {
                         from_now_on: Some(_),
@@ -203,8 +201,8 @@ fn check_order(name: &str, order: i32, highest: usize) -> Result<(), Fault> {
     )))
 }
 
-/// Derivatives beyond this size, of inputs or as directions, are no derivatives of anything:
-/// powers of the time multiply them.
+/// Largest derivative of an input, and largest component of a direction: they are multiplied by powers of the
+/// time, and must not overflow.
 const LARGEST_DERIVATIVE: f64 = 1e50;
 
 fn check_derivative(name: &str, value: f64) -> Result<(), Fault> {

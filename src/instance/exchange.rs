@@ -9,8 +9,8 @@ use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{Account, AtLimit, Collapse, Model, Place, Recording};
 use crate::shortest::Shortest;
 
-/// A host finds the crossing of a limit to a tolerance, from either side of it:
-/// closer than this part of the limit it has been reached.
+/// A limit counts as reached closer than this part of it: a host locates events to a tolerance, from either
+/// side.
 const REACHED: f64 = 1e-9;
 
 /// How far the host has integrated.
@@ -19,11 +19,11 @@ const REACHED: f64 = 1e-9;
 pub struct Exchange<M: Model> {
     pub(super) time: DoubleDouble,
     pub(super) state: M::State,
-    /// A tuned parameter has made the state another, which the host has not been told yet.
+    /// A tuned parameter has changed the state, and the host does not know that yet.
     pub(super) states_changed: bool,
     pub(super) collapse: Option<Collapse<M::Limit>>,
-    /// The limit at which the host's last step has ended, where the simulation is to end there:
-    /// hosts read for the last time before they handle the event that tells them so.
+    /// The limit at which the host's last step has ended, where the simulation is to end there. Hosts read
+    /// results for the last time before they handle this event.
     pub(super) arrival: Option<Collapse<M::Limit>>,
     pub(super) record: Recording,
     pub(super) account: M::Account,
@@ -59,7 +59,7 @@ impl<M: Model> Exchange<M> {
         }
     }
 
-    /// The present state, with what is recorded of the way to it.
+    /// The present state and what was recorded up to it.
     pub(super) fn place<'a>(&self) -> Place<'a, M> {
         Place::At {
             state: self.state,
@@ -68,8 +68,8 @@ impl<M: Model> Exchange<M> {
         }
     }
 
-    /// The collapse as it can be read: also one that has not been handled as an event yet, where
-    /// the simulation is to end there.
+    /// The collapse that the host reads. Where the simulation is to end, it is there before its event has been
+    /// handled.
     pub(super) fn visible_collapse(&self, scene: &M::Scene) -> Option<&Collapse<M::Limit>> {
         let ends = |at: &&Collapse<M::Limit>| M::at_limit(scene, at.limit) == AtLimit::Terminate;
         self.collapse
@@ -77,7 +77,7 @@ impl<M: Model> Exchange<M> {
             .or(self.arrival.as_ref().filter(ends))
     }
 
-    /// Starts what is recorded anew, at the present.
+    /// Begins new recordings at the present.
     pub(super) fn record_anew(&mut self, scene: &M::Scene) {
         self.record = recording::<M>(scene, self.time, &self.state);
     }
@@ -168,9 +168,8 @@ impl<M: Model> Instance<M> {
         Ok(update)
     }
 
-    /// Whether an event is to be handled after this step of the host's
-    /// integrator: its search for events may have missed that a limit was passed.
-    /// Where the simulation is to end there, the collapse can be read from now on.
+    /// Whether an event is to be handled after this step of the host's integrator, whose search for events may
+    /// have missed a limit. Where the simulation is to end there, the collapse can be read from now on.
     ///
     /// # Errors
     /// Error before initialization has ended.

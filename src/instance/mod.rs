@@ -28,7 +28,7 @@ use crate::shortest::Shortest;
 /// Relative tolerance of the stretch where the host defines none.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;
 
-/// Tolerances that the integrator can keep; others are moved here.
+/// Smallest and largest tolerance that the integrator can keep; others are moved into this range.
 pub const TOLERANCE_RANGE: [f64; 2] = [1e-14, 1e-2];
 
 /// When the simulation begins, when it ends, and how accurate it is to be.
@@ -68,7 +68,7 @@ pub struct Instance<M: Model> {
     scene: M::Scene,
     experiment: Experiment,
     simulation: Simulation<M>,
-    /// Which inputs have derivatives that no step has used yet, a bit each.
+    /// A bit for each input, set while the input has derivatives that no step has used yet.
     fresh_derivatives: u64,
 }
 
@@ -127,7 +127,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// [`Instance::view`] of a state that is copied: out of the way of those that are not.
+    /// [`Instance::view`] where the state must be copied; not inlined, so that the other cases stay fast.
     #[inline(never)]
     fn view_without_run(&self) -> View<'_, M> {
         let scene = &self.scene;
@@ -230,12 +230,12 @@ impl<M: Model> Instance<M> {
         self.phase = Phase::Terminated;
     }
 
-    /// Puts everything back to how it was after instantiation.
+    /// Resets everything to its value after instantiation.
     pub fn reset(&mut self) {
         *self = Instance::of(self.interface);
     }
 
-    /// Makes every later call fail: something happened that must not happen.
+    /// Makes every later call fail, after a fatal error.
     pub fn give_up(&mut self) {
         self.phase = Phase::Fatal;
     }
@@ -260,7 +260,7 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Refuses a time that is no number, or so large that the clock cannot compute with it.
+/// Refuses a time that is NaN, or too large for the clock.
 fn check_time(what: &str, time: f64) -> Result<(), Fault> {
     let [_, largest] = STEP_RANGE;
     if time.abs() <= largest {

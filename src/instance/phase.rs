@@ -1,5 +1,4 @@
-//! What a host has asked for, and how far it has come: the phases of an instance. Which calls
-//! of a standard they permit is said in the room of that standard.
+//! The phases in the life of an instance. The room of a standard says which of its calls they permit.
 
 use serde::{Deserialize, Serialize};
 

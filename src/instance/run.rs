@@ -12,21 +12,21 @@ use crate::model::{AtLimit, Collapse, Integration, Model};
 use crate::shortest::Shortest;
 use crate::solver::trajectory::{Failure, Progress};
 
-/// Communication steps that can be followed: powers of shorter or longer ones are not numbers
-/// any more. Start times lie in the same range to both sides of 0.
+/// Shortest and longest communication step: powers of others overflow or underflow. Start times lie
+/// in the same range to both sides of 0.
 pub const STEP_RANGE: [f64; 2] = [1e-100, 1e50];
 
-/// Within this part of the time the host's clock is ours: sums of `f64` in another order. Ours,
-/// which keeps more digits, goes on then.
+/// A deviation of the host's clock by less than this part of the time is rounding. Our clock, which has more
+/// digits, is then kept.
 const SAME: f64 = 64.0 * f64::EPSILON;
 
-/// The host's clock may deviate by less than this part of a step, whatever it does with its time.
+/// The host's clock may always deviate by less than this part of a step.
 const OF_STEP: f64 = 0.01;
 
-/// It may also deviate by this part of the time: a unit in the last place of single precision.
+/// It may also deviate by this part of the time, one unit in the last place of single precision.
 const SINGLE: f64 = f32::EPSILON as f64;
 
-/// But by less than this part of a step, so that one that was forgotten or doubled is seen.
+/// But never by more than this part of a step: a step that was left out or made twice is then found.
 const MOST_OF_STEP: f64 = 0.5;
 
 /// By how much the host's time may deviate in one step of this length at this time.
@@ -45,11 +45,11 @@ pub struct Run<M: Model> {
     clock: DoubleDouble,
     motion: M::Integration,
     collapse: Option<Collapse<M::Limit>>,
-    /// The scene has changed since the trajectory has followed it.
+    /// The scene has changed since the last step.
     stale: bool,
     /// By how much the host's clock is ahead of the sum of its steps.
     drift: f64,
-    /// Where the last step began, if it was too much work and ended early.
+    /// Where the last step began, if it needed too much work and ended early.
     cut_from: Option<f64>,
 }
 
@@ -90,7 +90,7 @@ impl<M: Model> Run<M> {
         &self.motion
     }
 
-    /// The present state, where it lies stored and nothing has ended the motion.
+    /// The present state, where it is stored as such and the motion has not ended.
     #[inline]
     pub(super) fn stored_state(&self) -> Option<M::State> {
         match self.collapse {
@@ -105,7 +105,7 @@ impl<M: Model> Run<M> {
         self.collapse.as_ref()
     }
 
-    /// Starts what is recorded anew, at the present.
+    /// Begins new recordings at the present.
     pub(super) fn record_anew(&mut self, scene: &M::Scene) {
         self.motion.record_anew(scene);
     }
@@ -115,8 +115,8 @@ impl<M: Model> Run<M> {
         self.motion.scene_changed();
     }
 
-    /// Refuses a step that cannot be meant. Returns by how much the host's clock is ahead
-    /// of ours, 0 where the two are the same.
+    /// Refuses a step that makes no sense. Returns by how much the host's clock is ahead of ours, 0 where
+    /// both agree.
     #[inline]
     pub(super) fn check_step(
         &mut self,
@@ -153,8 +153,8 @@ impl<M: Model> Run<M> {
         }
     }
 
-    /// Refuses a step beyond the stop time. The end is reached by the host's clock or by the sum
-    /// of its steps, from which that of a host that adds up in single precision runs away.
+    /// Refuses a step beyond the stop time. The host's clock and the sum of its steps may differ, where it adds
+    /// in single precision; the step is good if one of them stays within the stop time.
     #[inline(never)]
     fn check_end(&self, current: f64, step: f64, deviation: f64, stop: f64) -> Result<(), Fault> {
         let beyond = current + step - stop;
@@ -171,8 +171,8 @@ impl<M: Model> Run<M> {
         )))
     }
 
-    /// Ends the simulation of a host that does nothing about a step that was discarded: FMPy, for
-    /// one, would ask for it for ever.
+    /// Discards a step once more for a host that ignored the first time, and that should end the simulation. FMPy,
+    /// for one, would repeat the step for ever.
     #[cold]
     fn asked_again(&mut self, current: f64) -> Fault {
         self.cut_from = None;
@@ -193,15 +193,15 @@ impl<M: Model> Run<M> {
         ))
     }
 
-    /// Takes the host's time over as ours. The motion stands where it is; where what drives it
-    /// depends on time, it restarts there.
+    /// Sets our clock to the host's time. The state stays; the motion restarts where its inputs depend on
+    /// time.
     pub(super) fn set_clock(&mut self, scene: &M::Scene, current: f64, deviation: f64) {
         self.drift += deviation;
         self.clock = DoubleDouble::new(current);
         self.stale |= M::depends_on_time(scene);
     }
 
-    /// Whether the last step was too much work and ended early, and the motion can go on.
+    /// Whether the last step needed too much work and ended early. The motion can go on from there.
     pub(super) fn was_cut(&self) -> bool {
         self.cut_from.is_some()
     }
@@ -246,7 +246,7 @@ impl<M: Model> Run<M> {
         }
     }
 
-    /// Why the step ended early. One that was too much work can be gone on with.
+    /// Why the step ended early. After a step that needed too much work, the motion can go on.
     #[cold]
     fn fail(&mut self, failure: Failure, current: f64) -> Fault {
         let time = Shortest(self.clock.value());
@@ -273,7 +273,7 @@ impl<M: Model> Instance<M> {
     /// actuator has collapsed in it.
     ///
     /// # Errors
-    /// Error for a step that cannot be meant, with nothing changed; Discard
+    /// Error for a step that makes no sense, with nothing changed; Discard
     /// where the step ends early, at [`Instance::last_successful_time`].
     pub fn do_step(&mut self, current: f64, step: f64) -> Result<Option<Message>, Fault> {
         self.followed(current, step)
@@ -299,7 +299,7 @@ impl<M: Model> Instance<M> {
         run.step(&self.scene, current, step)
     }
 
-    /// Notes that a step has ended early for good, if it has.
+    /// Ends the run if the step has ended early and the motion cannot go on.
     #[cold]
     fn failed(&mut self, fault: Fault) -> Fault {
         let was_cut = matches!(&self.simulation, Simulation::Run(run) if run.was_cut());
@@ -310,9 +310,9 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Takes the host's time over, which is ahead of ours by `deviation`. What was set since the last
-/// step (derivatives: bit k for input k) was set for the host's communication point; the other
-/// inputs go on as the functions of time that they are.
+/// Sets our clock to the host's time, which is ahead by `deviation`. Inputs whose derivatives were set since
+/// the last step (bit k for input k) count from the host's communication point; the others stay the same
+/// functions of time.
 #[cold]
 fn follow_clock<M: Model>(
     run: &mut Run<M>,

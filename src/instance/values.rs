@@ -95,8 +95,7 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     /// Error for an unknown reference or another type; then nothing is stored.
-    /// Discard where a result is no number, at a state that a host's integrator
-    /// tried far out or at 0.
+    /// Discard where a result is NaN: a host's integrator may try states far out or at 0.
     pub fn get(
         &self,
         wanted: Type,
@@ -122,9 +121,9 @@ impl<M: Model> Instance<M> {
         Err(cannot_be_worked_out(&view, references))
     }
 
-    /// Reads a state, where the motion stands at one that lies stored. Only compares and copies: no
-    /// arithmetic is done, and no floating-point comparison. Returns whether it has been read; if
-    /// not, nothing is stored, and [`Instance::get`] is to be called.
+    /// Reads a state where it is stored as such. It compares integers and copies, without any floating-point
+    /// operation. Returns whether the state has been read; if not, nothing is stored, and [`Instance::get`] is to
+    /// be called.
     #[inline]
     pub fn get_stored(&self, reference: u32, value: &mut f64) -> bool {
         let Simulation::Run(run) = &self.simulation else {
@@ -140,8 +139,8 @@ impl<M: Model> Instance<M> {
         component.is_some()
     }
 
-    /// Sets an input that keeps its value between communication points. Only compares and copies: no
-    /// arithmetic is done, and no floating-point comparison. Returns whether it has been set; if not,
+    /// Sets an input that is constant between communication points. It compares integers and copies, without any
+    /// floating-point operation. Returns whether the input has been set; if not,
     /// nothing has changed, and [`Instance::set`] is to be called.
     #[inline]
     pub fn set_held(&mut self, reference: u32, value: f64) -> bool {
@@ -156,7 +155,7 @@ impl<M: Model> Instance<M> {
         true
     }
 
-    /// [`Instance::set_held`] of some inputs, or of none.
+    /// [`Instance::set_held`] of several inputs: of all, or of none.
     #[inline(never)]
     pub fn set_all_held(&mut self, references: &[u32], values: &[f64]) -> bool {
         let given = references.iter().copied().zip(values.iter().copied());
@@ -168,7 +167,7 @@ impl<M: Model> Instance<M> {
                 .all(|(reference, value)| self.set_held(reference, value))
     }
 
-    /// The input of this value reference, if it keeps its value and may have this one.
+    /// The input of this value reference, if it is constant and may have this value.
     #[inline]
     fn held_input(&mut self, reference: u32, value: f64) -> Option<&mut Polynomial> {
         let variable = M::VARIABLES.get(reference as usize)?;
@@ -263,8 +262,8 @@ impl<M: Model> Instance<M> {
         Ok(())
     }
 
-    /// Refuses tunable parameters with which there is no motion from the present state. Returns that
-    /// state, where it is another with them.
+    /// Refuses tunable parameters with which there is no motion from the present state. Returns the state that
+    /// they make of it, where it changes.
     fn check_tuned(
         &self,
         references: &[u32],
@@ -302,7 +301,7 @@ impl<M: Model> Instance<M> {
         Ok((state != M::state(&view)).then_some(state))
     }
 
-    /// Puts the state that the host integrates elsewhere.
+    /// Sets the state that the host integrates.
     fn jump_to(&mut self, state: M::State) {
         if let Simulation::Exchange(now) = &mut self.simulation {
             (now.state, now.states_changed) = (state, true);
@@ -325,7 +324,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Starts what is recorded anew, at the present.
+    /// Begins new recordings at the present.
     fn record_anew(&mut self) {
         match &mut self.simulation {
             Simulation::NotBegun => {}
@@ -334,7 +333,7 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// The scene is not what the run has integrated so far.
+    /// Notes that the scene has changed.
     pub(super) fn changed(&mut self) {
         if let Simulation::Run(run) = &mut self.simulation {
             run.scene_changed();
@@ -360,8 +359,7 @@ impl<M: Model> Instance<M> {
     }
 }
 
-/// Why one of these results is no number: there is no motion at the state, or what it is worked out from is
-/// beyond the range of numbers.
+/// Why one of these results is NaN: there is no motion at the state, or an intermediate result overflows.
 #[cold]
 fn cannot_be_worked_out<M: Model>(view: &View<M>, references: &[u32]) -> Fault {
     let name = references
@@ -394,7 +392,7 @@ fn not_settable<M: Model>(variable: &Variable<M>) -> Fault {
     })
 }
 
-/// A state may be any finite number: a host's integrator tries far out.
+/// A state may be any finite number: a host's integrator may try states far out.
 fn check_state<M: Model>(variable: &Variable<M>, value: f64) -> Result<(), Fault> {
     if value.is_finite() {
         return Ok(());
