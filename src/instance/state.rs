@@ -7,8 +7,8 @@
 //! every call as any other does. Its numbers fit together: settings inside their
 //! limits, a phase that goes with how far the simulation is, and a motion whose steps join, with
 //! the present in one of them and between the limits of the stretch. That the
-//! steps solve the equation of motion is not checked: bytes forged with care move
-//! the actuator as they say, until an input or a parameter changes.
+//! steps solve the equation of motion is not checked: bytes that are forged with care give a wrong motion
+//! until an input or a parameter changes.
 
 use super::{
     Experiment, Fault, Instance, Interface, Phase, Simulation, TOLERANCE_RANGE, check_time,
@@ -17,9 +17,9 @@ use crate::model::Model;
 use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 14;
+pub const LAYOUT: u16 = 15;
 
-/// Room that is made for a first save, which is enlarged where it does not suffice.
+/// Bytes that are allocated for a first save. They are enlarged where they do not suffice.
 const LEAST_ROOM: usize = 1024;
 
 /// A saved instance, whose numbers fit together: it was saved by this process, or its bytes were
@@ -38,7 +38,7 @@ impl Saved {
 }
 
 impl<M: Model> Instance<M> {
-    /// The instance as it is now, in the memory of one that was saved before.
+    /// Saves the present instance, in the memory of one that was saved before.
     ///
     /// # Errors
     /// Error where the memory does not suffice.

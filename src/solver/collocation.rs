@@ -17,6 +17,7 @@
 use std::ops::RangeInclusive;
 
 use fearless_simd::{Level, Simd, dispatch, f64x8};
+use serde::{Deserialize, Serialize};
 
 use super::iteration::{Convergence, Diverged, IterationTolerance};
 use super::tables::product::product_in_lanes;
@@ -36,7 +37,7 @@ const BETWEEN_NODES: f64 = 0.0046;
 
 /// f over a substep: half² times its Legendre coefficients, where half is half
 /// the length of the substep.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Series {
     /// Half the length of the substep.
     pub half: f64,
@@ -44,6 +45,29 @@ pub struct Series {
     pub even: [f64; PAIRS],
     /// half² · (a_1, a_3, …).
     pub odd: [f64; PAIRS],
+}
+
+impl Series {
+    /// The series with these Legendre coefficients.
+    pub fn new(half: f64, coefficients: &[f64; 2 * PAIRS]) -> Series {
+        let square = half * half;
+        Series {
+            half,
+            even: std::array::from_fn(|k| square * coefficients[2 * k]),
+            odd: std::array::from_fn(|k| square * coefficients[2 * k + 1]),
+        }
+    }
+
+    /// half² times the Legendre coefficient of this degree.
+    #[inline(always)]
+    pub fn term(&self, degree: usize) -> f64 {
+        let terms = if degree.is_multiple_of(2) {
+            &self.even
+        } else {
+            &self.odd
+        };
+        terms[degree / 2]
+    }
 }
 
 /// A substep that has been solved.
@@ -64,14 +88,12 @@ pub struct Substep {
 impl Substep {
     /// The size of the last two coefficients of f, in units of the position:
     /// what is neglected after them is smaller.
-    #[must_use]
     pub fn tail(&self) -> f64 {
         self.series.even[PAIRS - 1].abs() + self.series.odd[PAIRS - 1].abs()
     }
 
     /// Estimate of the error at the end. Degree 32 is the first that is integrated wrongly. A Legendre
     /// series that falls geometrically has there the square of what it has at degree 16, over its size.
-    #[must_use]
     pub fn end_error(&self) -> f64 {
         let Series { even, odd, .. } = &self.series;
         let size = even[0].abs() + odd[0].abs() + even[1].abs();
@@ -81,14 +103,12 @@ impl Substep {
     }
 
     /// The range of positions at the nodes.
-    #[must_use]
     pub fn nodes(&self) -> RangeInclusive<f64> {
         self.lowest..=self.highest
     }
 
     /// The range that holds the motion, which began at `start`: between two nodes it goes beyond both
     /// by the bend of f at most.
-    #[must_use]
     pub fn reach(&self, start: f64) -> RangeInclusive<f64> {
         let Series { even, odd, .. } = &self.series;
         // In four sums, or each would wait for the one before.
@@ -257,13 +277,5 @@ fn solve<S: Simd, L: LocalEquation>(
 #[inline(always)]
 fn continued<N: Number>(series: &Series, u: N) -> N {
     let size = 1.0 / (series.half * series.half);
-    let coefficient = |degree: usize| {
-        let half = if degree.is_multiple_of(2) {
-            &series.even
-        } else {
-            &series.odd
-        };
-        u.same(half[degree / 2])
-    };
-    legendre::sum(u, 2 * PAIRS, coefficient) * u.same(size)
+    legendre::sum(u, 2 * PAIRS, |degree| u.same(series.term(degree))) * u.same(size)
 }

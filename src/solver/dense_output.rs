@@ -27,13 +27,10 @@ pub const VALIDATION_TOLERANCE: f64 = 1e-6;
 /// x(t) over one substep, u = t/half − 1 ∈ [−1, 1].
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Segment {
-    half: f64,
     start: State,
     end: State,
-    /// half² · (a_0, a_2, …, a_14), the Legendre coefficients of f.
-    even: [f64; PAIRS],
-    /// half² · (a_1, a_3, …, a_15).
-    odd: [f64; PAIRS],
+    /// f over it.
+    series: Series,
     /// Coefficients of the powers of u; worked out when first needed, since
     /// whoever runs over a whole segment needs its end only.
     #[serde(skip)]
@@ -47,14 +44,11 @@ pub struct Segment {
 
 impl Segment {
     /// The motion from `start` to `end` with f given by its series.
-    #[must_use]
-    pub fn new(start: State, end: State, f: &Series) -> Segment {
+    pub fn new(start: State, end: State, series: &Series) -> Segment {
         Segment {
-            half: f.half,
             start,
             end,
-            even: f.even,
-            odd: f.odd,
+            series: *series,
             power: [0.0; TERMS],
             inverse: 0.0,
             expanded: false,
@@ -62,30 +56,23 @@ impl Segment {
     }
 
     /// f over the substep.
-    pub fn series(&self) -> Series {
-        Series {
-            half: self.half,
-            even: self.even,
-            odd: self.odd,
-        }
+    pub fn series(&self) -> &Series {
+        &self.series
     }
 
     /// The length of the substep.
-    #[must_use]
     #[inline]
     pub fn length(&self) -> f64 {
-        2.0 * self.half
+        2.0 * self.series.half
     }
 
     /// The state at the begin.
-    #[must_use]
     #[inline]
     pub fn start(&self) -> State {
         self.start
     }
 
     /// The state at the end, more accurate than the polynomial between.
-    #[must_use]
     #[inline]
     pub fn end(&self) -> State {
         self.end
@@ -93,15 +80,14 @@ impl Segment {
 
     /// Whether the numbers can be those of a substep: from its start f, whatever it
     /// follows, leads to its end.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         let State { position, rate } = self.start;
         let drift = self.length() * rate;
-        let [mean, tilt] = [self.even[0], self.odd[0] / 3.0];
+        let [mean, tilt] = [self.series.even[0], self.series.odd[0] / 3.0];
         let moved = self.end.position - position - drift - 2.0 * (mean - tilt);
-        let turned = self.half * (self.end.rate - rate) - 2.0 * mean;
+        let turned = self.series.half * (self.end.rate - rate) - 2.0 * mean;
         let size = position.abs() + drift.abs() + self.bend();
-        self.half > 0.0
+        self.series.half > 0.0
             && size.is_finite()
             && moved.abs() <= VALIDATION_TOLERANCE * size
             && turned.abs() <= VALIDATION_TOLERANCE * (drift.abs() + self.bend())
@@ -114,12 +100,12 @@ impl Segment {
 
     /// Whether the motion turns at `offset`, as far as that can be told.
     pub fn turns_at(&self, offset: f64) -> bool {
-        self.half * self.rate(offset).abs() <= VALIDATION_TOLERANCE * self.bend()
+        self.series.half * self.rate(offset).abs() <= VALIDATION_TOLERANCE * self.bend()
     }
 
     /// How far f can bend the motion, as a length.
     fn bend(&self) -> f64 {
-        let all = self.even.iter().chain(&self.odd);
+        let all = self.series.even.iter().chain(&self.series.odd);
         all.map(|coefficient| coefficient.abs()).sum()
     }
 
@@ -129,8 +115,8 @@ impl Segment {
         if self.expanded {
             return;
         }
-        let even = product(&PAIRED_16.powers_from_even, &self.even);
-        let odd = product(&PAIRED_16.powers_from_odd, &self.odd);
+        let even = product(&PAIRED_16.powers_from_even, &self.series.even);
+        let odd = product(&PAIRED_16.powers_from_odd, &self.series.odd);
         for i in 0..PAIRS {
             self.power[2 * i + 2] = even[i];
             self.power[2 * i + 3] = odd[i];
@@ -142,25 +128,23 @@ impl Segment {
             slope += sign * k as f64 * self.power[k];
             value += sign * self.power[k];
         }
-        self.power[1] = self.half * self.start.rate + slope;
+        self.power[1] = self.series.half * self.start.rate + slope;
         self.power[0] = self.start.position + (self.power[1] - value);
-        self.inverse = 1.0 / self.half;
+        self.inverse = 1.0 / self.series.half;
         self.expanded = true;
     }
 
     fn local(&self, offset: f64) -> f64 {
         debug_assert!(self.expanded);
-        (offset - self.half) * self.inverse
+        (offset - self.series.half) * self.inverse
     }
 
     /// x at `offset` after the begin of the segment.
-    #[must_use]
     pub fn position(&self, offset: f64) -> f64 {
         polynomial(self.local(offset), |k| self.power[k])
     }
 
     /// x' at `offset` after the begin of the segment.
-    #[must_use]
     pub fn rate(&self, offset: f64) -> f64 {
         let slope = |k: usize| match self.power.get(k + 1) {
             Some(power) => (k + 1) as f64 * power,
@@ -170,7 +154,6 @@ impl Segment {
     }
 
     /// x and x' at `offset` after the begin of the segment.
-    #[must_use]
     pub fn state(&self, offset: f64) -> State {
         State {
             position: self.position(offset),

@@ -13,7 +13,6 @@ pub struct Extremes {
 
 impl Extremes {
     /// The extremes of a motion that has only been at this position.
-    #[must_use]
     pub fn at(position: f64) -> Extremes {
         Extremes {
             lowest: position,
@@ -34,7 +33,6 @@ impl Extremes {
     }
 
     /// Whether the numbers can be those of a motion.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         self.lowest <= self.highest && self.lowest.is_finite() && self.highest.is_finite()
     }

@@ -28,14 +28,12 @@ pub enum Limit {
 
 impl Limits {
     /// Whether there is room between the limits.
-    #[must_use]
     pub fn are_valid(&self) -> bool {
         self.lower < self.upper && self.lower.is_finite() && self.upper.is_finite()
     }
 
     /// The position between the limits that is the nearest to this one. `f64::clamp` would bring along what
     /// prints its numbers in a panic.
-    #[must_use]
     pub fn nearest(&self, position: f64) -> f64 {
         if position < self.lower {
             self.lower
@@ -48,7 +46,6 @@ impl Limits {
 
     /// The limit that lies less than `tolerance`, relative to it, before a state that moves towards
     /// it, or behind the state.
-    #[must_use]
     pub fn reached(&self, state: &State, tolerance: f64) -> Option<Limit> {
         let &State { position, rate } = state;
         let margin = |toward: f64| if toward > 0.0 { tolerance } else { 0.0 };
@@ -63,7 +60,6 @@ impl Limits {
 
     /// The limit that the motion first meets in the segment, and the offset
     /// at which it does, to rounding. `reach` is the range that holds the motion.
-    #[must_use]
     pub fn first_contact(
         &self,
         segment: &mut Segment,
@@ -88,7 +84,6 @@ impl Limits {
     /// Whether these positions are so far out that a substep with them says
     /// nothing about where it crossed a limit, nor perhaps about the motion:
     /// an equation may be singular out there.
-    #[must_use]
     pub fn are_left_behind_by(&self, nodes: RangeInclusive<f64>) -> bool {
         let margin = 0.5 * (self.upper - self.lower);
         *nodes.end() > self.upper + margin || *nodes.start() < 0.5 * self.lower

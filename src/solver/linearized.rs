@@ -22,7 +22,6 @@ pub const NODES: usize = 2 * PAIRS;
 pub type StageVector = SVector<f64, NODES>;
 
 /// The times of the stages, counted from the begin of a substep of this length.
-#[must_use]
 pub fn offsets(length: f64) -> [f64; NODES] {
     GAUSS_16.place.map(|place| 0.5 * length * place)
 }
@@ -37,7 +36,6 @@ pub struct Linearized {
 
 impl Linearized {
     /// The equation with a and b given at the stages of a substep of this length.
-    #[must_use]
     pub fn new(length: f64, by_position: StageVector, by_rate: StageVector) -> Linearized {
         let half = 0.5 * length;
         let system = SMatrix::<f64, NODES, NODES>::from_fn(|row, column| {
@@ -55,7 +53,6 @@ impl Linearized {
 
     /// y from `start` on, with g given at the stages; nothing where the stages have no
     /// unique solution.
-    #[must_use]
     pub fn solve(&self, start: State, g: StageVector) -> Option<Segment> {
         let times = offsets(2.0 * self.half);
         let free = StageVector::from_fn(|i, _| {
@@ -71,11 +68,7 @@ impl Linearized {
             position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
             rate: start.rate + length * mean,
         };
-        let series = Series {
-            half: self.half,
-            even: std::array::from_fn(|k| square * series[2 * k]),
-            odd: std::array::from_fn(|k| square * series[2 * k + 1]),
-        };
+        let series = Series::new(self.half, &series.into());
         Some(Segment::new(start, end, &series))
     }
 }

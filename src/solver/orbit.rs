@@ -15,7 +15,6 @@ pub struct Orbit {
 
 impl Orbit {
     /// The orbit between two turning points, the first one before the second.
-    #[must_use]
     pub fn between(first_turn: DoubleDouble, second_turn: DoubleDouble) -> Orbit {
         Orbit {
             first_turn,
@@ -37,7 +36,6 @@ impl Orbit {
     }
 
     /// Both turning points, the earlier one first.
-    #[must_use]
     pub fn turns(&self) -> [DoubleDouble; 2] {
         [self.first_turn, self.second_turn]
     }
@@ -63,13 +61,11 @@ impl Orbit {
     }
 
     /// The later turning point.
-    #[must_use]
     pub fn second_turn(&self) -> DoubleDouble {
         self.second_turn
     }
 
     /// The time from `now` to the next turning point.
-    #[must_use]
     pub fn time_to_turn(&self, now: DoubleDouble, direction: f64) -> f64 {
         if direction > 0.0 {
             self.second_turn.since(now)
@@ -106,7 +102,6 @@ impl Orbit {
 
     /// Where between the turning points, and in which direction, the motion is
     /// after the time `step`.
-    #[must_use]
     pub fn run(&self, now: DoubleDouble, mut direction: f64, step: f64) -> (DoubleDouble, f64) {
         let rest = self.remainder(step);
         let mut now = now.add(rest.scale_exactly(direction));

@@ -72,7 +72,6 @@ const MOST_LONGER: f64 = 4.0;
 
 /// Whether a step of this length may go on from the f of the step before, half of whose length is given.
 /// One that was cut short says nothing about much longer ones: rounding leaves some of 1e-17.
-#[must_use]
 pub fn goes_on_from(half: f64, length: f64) -> bool {
     length <= 2.0 * MOST_LONGER * half
 }
@@ -136,32 +135,27 @@ pub fn first_accepted<T>(
 
 impl StepControl {
     /// For a relative `tolerance` of the result.
-    #[must_use]
     pub fn new(tolerance: f64) -> StepControl {
         StepControl { tolerance }
     }
 
     /// Whether the tolerance is one.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         self.tolerance > 0.0 && self.tolerance < 1.0
     }
 
     /// Whether few nodes are enough.
-    #[must_use]
     pub fn is_loose(&self) -> bool {
         self.tolerance > LOOSE
     }
 
     /// The control of what is repeated: an orbit is as long as the caller likes, and so is its
     /// error; the errors of ever new starts add up. Neither costs more than an iteration or two.
-    #[must_use]
     pub fn repeated(&self) -> StepControl {
         StepControl::new(REPEATED_SHARE * self.tolerance)
     }
 
     /// The error that may be left at the end of a step, relative to the position.
-    #[must_use]
     pub fn end_tolerance(&self) -> f64 {
         let share = if self.is_loose() {
             LEFT_AT_END
@@ -173,7 +167,6 @@ impl StepControl {
 
     /// The error that may be left at the end of a step that is a `part` of the motion's time scale,
     /// relative to the position: the shorter steps are, the more there are.
-    #[must_use]
     pub fn end_tolerance_within(&self, part: f64) -> f64 {
         (self.end_tolerance() * part.min(1.0)).max(UNSEEN)
     }
@@ -181,7 +174,6 @@ impl StepControl {
     /// How accurately the stages of such a step from this position are solved. What an iteration leaves of f
     /// makes an error of the rate that is, in the time scale, 1/part times that of
     /// the position; and the rounding of f moves the position by as little as f.
-    #[must_use]
     pub fn iteration_tolerance(&self, position: f64, part: f64) -> IterationTolerance {
         let short = part.min(1.0);
         let error = self.end_tolerance_within(part) * position * short;

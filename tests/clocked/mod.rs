@@ -53,7 +53,9 @@ impl Clocked<Carried> {
         equation: &E,
         step: f64,
     ) -> Result<coupled::Progress, Failure> {
-        self.motion.advance(equation, &mut self.clock, step)
+        let mut work = coupled::MOST_WORK;
+        self.motion
+            .advance(equation, &mut self.clock, step, &mut work)
     }
 }
 

@@ -1,12 +1,12 @@
 //! Pull-in thresholds of real actuators.
 
+use crate::clocked::Clocked;
 use crate::scene::{number, read};
 use dielectric_elastomer_actuator::actuator::device::{
     Branch, Device, DeviceMotion, Elasticity, Locking, Source, Spring,
 };
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Drive, Parameters};
-use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::pull_in;
 use dielectric_elastomer_actuator::pull_in::device::{
     Glassy, Search, dynamic, from_rest, quasi_static,
@@ -358,9 +358,8 @@ fn a_step_just_above_the_threshold_from_rest_pulls_in() {
                 lower: 0.1,
                 upper: 4.0,
             };
-            let mut clock = DoubleDouble::ZERO;
-            let mut trajectory = Trajectory::new(rest, limits, 1e-13);
-            let outcome = trajectory.advance(&motion, &mut clock, 300.0 * period);
+            let mut trajectory = Clocked::from(Trajectory::new(rest, limits, 1e-13));
+            let outcome = trajectory.advance(&motion, 300.0 * period);
             let passed = matches!(outcome, Ok(Progress::Stopped { .. }));
             assert_eq!(passed, pulls_in, "{case}: {device:?} {fold:?}");
         }

@@ -76,11 +76,12 @@ fn damaged_bytes_never_give_a_motion_that_is_none() {
             for change in [0x01, 0x80, 0xff] {
                 let mut damaged = bytes.clone();
                 damaged[place] ^= change;
-                let Ok(mut restored) = postcard::from_bytes::<Trajectory>(&damaged) else {
+                let Ok(restored) = postcard::from_bytes::<Trajectory>(&damaged) else {
                     continue;
                 };
                 if restored.is_valid() {
-                    let _ = restored.advance(&motion, &mut DoubleDouble::new(33.3), 1.0);
+                    let mut restored = Clocked::at(DoubleDouble::new(33.3), restored);
+                    let _ = restored.advance(&motion, 1.0);
                     assert!(restored.position().is_finite(), "{name}, byte {place}");
                 }
             }

@@ -248,7 +248,7 @@ fn excess_of(
     let slowness = 1.0 + device.damping.coefficient(1.0) / period;
     let mut look = 0.5 * period * slowness;
     for _ in 0..MOST_LOOKS {
-        match trajectory.advance_within(&motion, &mut clock, look, work) {
+        match trajectory.advance(&motion, &mut clock, look, work) {
             Ok(Progress::Whole) => {}
             Ok(Progress::Stopped {
                 limit: Event::Limit(Limit::Upper),

@@ -163,7 +163,6 @@ pub trait LocalCoupledEquation {
 
 impl FullState {
     /// A state with nothing but a position and a rate.
-    #[must_use]
     pub fn of(motion: State) -> FullState {
         FullState {
             motion,
@@ -173,7 +172,6 @@ impl FullState {
     }
 
     /// The state as a stage.
-    #[must_use]
     pub fn stage(&self) -> Stage {
         Stage {
             position: self.motion.position,
@@ -183,7 +181,6 @@ impl FullState {
     }
 
     /// Whether all its numbers are finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         let State { position, rate } = self.motion;
         let mut all = [position, rate].into_iter();

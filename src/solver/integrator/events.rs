@@ -110,7 +110,6 @@ impl<M: Method> Integrator<M> {
     }
 
     /// The extremes up to the present, where they are recorded.
-    #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
         self.recording.map(|recording| recording.extremes)
     }

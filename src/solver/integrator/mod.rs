@@ -168,14 +168,12 @@ impl<M: Method> Integrator<M> {
     }
 
     /// The present position, counted from 0.
-    #[must_use]
     pub fn position(&self) -> f64 {
         let (origin, position) = self.position_from_origin();
         origin.absolute(position)
     }
 
     /// The present position, counted from the origin that is returned with it.
-    #[must_use]
     pub fn position_from_origin(&self) -> (M::Origin, f64) {
         match self.present() {
             Present::Start => (self.start.origin, self.start.state.position),
@@ -185,7 +183,6 @@ impl<M: Method> Integrator<M> {
     }
 
     /// The present rate.
-    #[must_use]
     pub fn rate(&self) -> f64 {
         self.mode.direction()
             * match self.present() {
@@ -196,7 +193,6 @@ impl<M: Method> Integrator<M> {
     }
 
     /// The present position, counted from 0, and rate.
-    #[must_use]
     pub fn state(&self) -> State {
         State {
             position: self.position(),

@@ -12,7 +12,6 @@ impl<M: Method> Integrator<M> {
     /// Whether the numbers fit together: to be checked where they do not come from this process.
     /// The steps join, the present lies in its step and between the limits, an orbit turns where it
     /// says. Whether the steps solve an equation is not looked at.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         let end = self.history.end();
         let inside = |time: &DoubleDouble| {
@@ -53,7 +52,6 @@ impl<M: Method> Integrator<M> {
     }
 
     /// Whether it is followed between these limits, with this tolerance.
-    #[must_use]
     pub fn keeps_to(&self, limits: Limits, tolerance: f64) -> bool {
         self.settings.limits == limits && self.settings.control.tolerance == tolerance
     }

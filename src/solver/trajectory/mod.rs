@@ -88,7 +88,6 @@ pub type Trajectory = Integrator<Steps>;
 impl Trajectory {
     /// A motion from `start`, followed with a relative `tolerance` of the position inside the
     /// `limits`.
-    #[must_use]
     pub fn new(start: State, limits: Limits, tolerance: f64) -> Trajectory {
         let steps = Steps {
             next_length: None,
@@ -116,7 +115,6 @@ impl Trajectory {
     }
 
     /// The present state, where it is that at which a step has ended and none is kept.
-    #[must_use]
     #[inline]
     pub fn stored_state(&self) -> Option<State> {
         self.history.is_empty().then_some(self.start.state)
@@ -410,7 +408,7 @@ impl Trajectory {
             acceleration: ACCELERATION,
         };
         let before = last
-            .map(|step| step.segment.series())
+            .map(|step| *step.segment.series())
             .filter(|before| goes_on_from(before.half, longest));
         let guess = match &before {
             Some(before) => Guess::Before(before),

@@ -2,14 +2,13 @@
 
 use super::{Carried, MOST_WORK, Trajectory};
 use crate::arithmetic::legendre;
-use crate::solver::coupled::polynomials::{LegendreCoefficients, Polynomials};
+use crate::solver::coupled::polynomials::{LegendreCoefficients, Polynomials, TERMS};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
-use crate::solver::dense_output::{Segment, VALIDATION_TOLERANCE};
+use crate::solver::dense_output::VALIDATION_TOLERANCE;
 use crate::solver::integrator::{Method, Present, is_length};
 
 impl Trajectory {
     /// The present first-order states.
-    #[must_use]
     pub fn internal(&self) -> [f64; MOST_STATES] {
         match (self.present(), &self.method.polynomials) {
             (Present::Inside(_, offset), Some(polynomials)) => polynomials.internal(offset),
@@ -20,7 +19,6 @@ impl Trajectory {
 
     /// The present derivatives of the first-order states, from the polynomials: where a state
     /// relaxes fast, its equation would lose their digits. Nothing before the first step.
-    #[must_use]
     pub fn slopes(&self) -> Option<[f64; MOST_STATES]> {
         let polynomials = self.method.polynomials.as_ref()?;
         Some(polynomials.slopes(match self.present() {
@@ -31,7 +29,6 @@ impl Trajectory {
     }
 
     /// The present integrals.
-    #[must_use]
     pub fn integrals(&self) -> [f64; MOST_INTEGRALS] {
         match (self.present(), &self.method.polynomials) {
             (Present::Inside(_, offset), Some(polynomials)) => polynomials.integrals(offset),
@@ -54,25 +51,10 @@ impl Trajectory {
         let step = &self.history.steps()[self.cursor.step];
         let series = step.segment.series();
         let u = self.cursor.now.since(step.begin) / series.half - 1.0;
-        let terms = by_degree(&step.segment);
-        let sum = legendre::sum(u, terms.len(), |k| terms[k]);
+        let sum = legendre::sum(u, TERMS, |degree| series.term(degree));
         let acceleration = sum / (series.half * series.half);
         (acceleration, self.slopes().unwrap_or_default())
     }
-}
-
-/// The Legendre coefficients of x'' over a step, degree by degree, times the square of half its
-/// length.
-pub(super) fn by_degree(segment: &Segment) -> LegendreCoefficients {
-    let series = segment.series();
-    std::array::from_fn(|k| {
-        let half = if k % 2 == 0 {
-            &series.even
-        } else {
-            &series.odd
-        };
-        half[k / 2]
-    })
 }
 
 impl Method for Carried {

@@ -1,7 +1,6 @@
 //! The next step of a motion.
 
 use super::Trajectory;
-use super::evaluation::by_degree;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
@@ -107,7 +106,11 @@ impl Trajectory {
             f64::INFINITY
         };
         let step = self.step(&local, &start, origin, &demands, most, work)?;
-        let segment = Segment::new(start.motion, step.end.motion, &motion_series(&step));
+        let segment = Segment::new(
+            start.motion,
+            step.end.motion,
+            &Series::new(step.series.half, &step.series.motion),
+        );
         // The steps are kept while they may still make an orbit.
         let shift = self.push(origin, segment, repeats);
         if states > 0 || integrals > 0 {
@@ -274,10 +277,11 @@ impl Trajectory {
     /// The slopes of the last step, where the next one goes on from it.
     fn slopes_of_last_step(&self, fresh: bool) -> Option<Slopes> {
         let step = self.history.steps().last().filter(|_| !fresh)?;
-        let half = 0.5 * step.segment.length();
+        let series = step.segment.series();
+        let half = series.half;
         Some(Slopes {
             half,
-            motion: by_degree(&step.segment).map(|term| term / (half * half)),
+            motion: std::array::from_fn(|degree| series.term(degree) / (half * half)),
             internal: self
                 .method
                 .polynomials
@@ -294,15 +298,4 @@ fn stands<L: LocalCoupledEquation>(local: &L, start: &FullState, states: usize) 
     stage.rate == 0.0
         && local.acceleration(load, &stage).value == 0.0
         && slopes[..states].iter().all(|slope| slope.value == 0.0)
-}
-
-/// x'' as the segment takes it.
-fn motion_series(step: &Step) -> Series {
-    let Slopes { half, motion, .. } = step.series;
-    let square = half * half;
-    Series {
-        half,
-        even: std::array::from_fn(|k| square * motion[2 * k]),
-        odd: std::array::from_fn(|k| square * motion[2 * k + 1]),
-    }
 }

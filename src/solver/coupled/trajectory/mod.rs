@@ -55,7 +55,6 @@ pub type Trajectory = Integrator<Carried>;
 impl Trajectory {
     /// A motion from `start`, followed with a relative `tolerance` of every state
     /// between the `limits` of the position. The position is counted from 0.
-    #[must_use]
     pub fn new(start: FullState, limits: Limits, tolerance: f64) -> Trajectory {
         Trajectory::within(History::empty(), start, limits, tolerance)
     }
@@ -124,27 +123,13 @@ impl Trajectory {
 
     /// Follows the motion for the time `step` > 0 from `clock`, the time to which it has come, and
     /// moves the clock to where it has come then. The `equation` must be the same as in the calls
-    /// before, back to the last [`Trajectory::restart`].
+    /// before, back to the last [`Trajectory::restart`]. No more `work` is done, in iterations: what is done is
+    /// taken from it.
     ///
     /// # Errors
     /// [`Failure`] where the integration cannot go on; the trajectory then stands at the end of
     /// the last step.
     pub fn advance<E: CoupledEquation>(
-        &mut self,
-        equation: &E,
-        clock: &mut DoubleDouble,
-        step: f64,
-    ) -> Result<Progress, Failure> {
-        let mut work = MOST_WORK;
-        self.advance_within(equation, clock, step, &mut work)
-    }
-
-    /// [`Trajectory::advance`] with no more than this `work`, in iterations, from which what is done is
-    /// taken.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn advance_within<E: CoupledEquation>(
         &mut self,
         equation: &E,
         clock: &mut DoubleDouble,
@@ -158,7 +143,7 @@ impl Trajectory {
         self.advance_beyond_step(equation, clock, step, work)
     }
 
-    /// The rest of [`Trajectory::advance_within`], where [`Integrator::advance_inside_step`] has told that
+    /// The rest of [`Trajectory::advance`], where [`Integrator::advance_inside_step`] has told that
     /// the motion leaves its step.
     ///
     /// # Errors
