@@ -118,7 +118,7 @@ impl Convergence {
         if second && done {
             let is_rounding = change <= self.tolerance.rounding;
             self.contraction = if is_rounding { 0.0 } else { worst };
-        } else if !second && !(done && ratio > 1.0) {
+        } else if !(second || done && ratio > 1.0) {
             self.contraction = self.contraction.max(ratio);
         }
         Ok(done)
