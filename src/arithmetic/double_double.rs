@@ -122,6 +122,15 @@ impl DoubleDouble {
         self.mul(DoubleDouble::new(factor))
     }
 
+    /// `value · count` of a whole number up to 256: nothing is rounded.
+    #[must_use]
+    #[inline]
+    pub const fn times(value: f64, count: f64) -> DoubleDouble {
+        // Of 45 and of 8 bits.
+        let high = f64::from_bits(value.to_bits() & !0xff);
+        exact_sum(high * count, (value - high) * count)
+    }
+
     /// `self · factor` of a power of 2, of either sign: nothing is rounded.
     #[must_use]
     #[inline]
@@ -193,6 +202,14 @@ mod tests {
         let root = DoubleDouble::new(2.0).sqrt();
         let rest = root.mul(root).sub(DoubleDouble::new(2.0));
         assert!(rest.value().abs() < 1e-31, "{rest:?}");
+    }
+
+    #[test]
+    fn a_few_times_a_number_is_exact() {
+        for (value, count) in [(0.1, 7.0), (1.0 / 3.0, 16.0), (1e200, 255.0), (-12.7, 1.0)] {
+            let exact = DoubleDouble::new(value).scale(count);
+            assert_eq!(DoubleDouble::times(value, count), exact);
+        }
     }
 
     #[test]

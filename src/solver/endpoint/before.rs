@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase, f64x4};
 use serde::{Deserialize, Serialize};
 
-use super::plan::{NODES, Pair, Plan, pair, shifted, unpair};
+use super::plan::{NODES, Pair, Plan, pair, shifted};
 use crate::arithmetic::number::Number;
 
 /// The last step.
@@ -27,9 +27,10 @@ impl Before {
             .all(|number| number.is_finite())
     }
 
-    /// g of the step after on its plan, where this one had half the length `half` and the slope `slope`.
+    /// g of the step after on its plan, where this one had half the length `half` and half²·J `product`.
     #[inline(always)]
-    pub fn continued<S: Simd>(&self, simd: S, plan: &Plan, half: f64, slope: f64) -> Pair<S> {
+    pub fn continued<S: Simd>(&self, simd: S, plan: &Plan, half: f64, product: f64) -> Pair<S> {
+        let slope = product / (half * half);
         let change = f64x4::splat(simd, slope - plan.slope);
         let [low, high] = pair(simd, &self.g);
         let displacement = pair(simd, &self.displacement);
@@ -41,7 +42,7 @@ impl Before {
             return plan.ahead(simd, g, self.moved);
         }
         shifted(
-            plan.resampled(simd, &unpair(g), half),
+            plan.resampled(simd, g, half, product),
             plan.slope * self.moved,
         )
     }

@@ -13,21 +13,19 @@ const SLOW: f64 = 0.25;
 
 /// Steps after which their length is looked at, and by which part it must be too long or too short
 /// to be changed: a new plan costs as much as a step.
-const CALM: u32 = 8;
-const TOO_LONG: f64 = 0.96;
-const TOO_SHORT: f64 = 1.25;
+const CALM: u32 = 12;
+const TOO_LONG: f64 = 0.8;
+const TOO_SHORT: f64 = 2.0;
 
-/// The first step in units of the motion's time scale at a tolerance of 1e-12, and at most.
+/// The first step in units of the motion's time scale at a tolerance of 1e-12.
 const FIRST_AT_TIGHT_TOLERANCE: f64 = 1.5;
-const LONGEST_FIRST: f64 = 2.0;
 
 /// By how much steps may grow at once.
 const MOST_GROWTH: f64 = 3.0;
 
 /// How long a step may be of which only the time scale of the motion is known, and the tolerance.
 pub fn first(time_scale: f64, control: StepControl) -> f64 {
-    let by_tolerance = FIRST_AT_TIGHT_TOLERANCE * factor(1e-12 / control.tolerance, ORDER);
-    time_scale * by_tolerance.min(LONGEST_FIRST)
+    time_scale * FIRST_AT_TIGHT_TOLERANCE * factor(1e-12 / control.tolerance, ORDER)
 }
 
 /// The worst of the steps since the length was looked at: its error as a part of what is allowed,
@@ -101,8 +99,8 @@ mod tests {
         };
         let mut seen = Seen::BEGIN;
         assert_eq!(step(&mut seen, 1e-20, 1.0), Some(3.0));
-        let grown = step(&mut seen, 1e-3, 3.0).expect("a longer one");
-        assert!(3.0 * TOO_SHORT < grown && grown < 4.5, "{grown}");
+        let grown = step(&mut seen, 1e-7, 3.0).expect("a longer one");
+        assert!(3.0 * TOO_SHORT < grown && grown < 7.5, "{grown}");
         // A fifth of what is allowed fits.
         assert_eq!(step(&mut seen, 0.2, grown), None);
         for _ in 1..CALM {

@@ -1,19 +1,23 @@
-//! Products and inverses of matrices over the nodes, by loops: iterators and closures are functions of their own, which
-//! are not compiled for the SIMD level.
+//! The matrices of a slope: products and inverses of matrices over the nodes.
 
-use fearless_simd::{Simd, SimdBase, f64x4};
+#![expect(
+    clippy::needless_range_loop,
+    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
+)]
 
-use super::plan::{NODES, Pair, pair, scaled, unpair};
-use super::table::Diagonals;
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
+
+use super::plan::{NODES, Pair, both_permuted, load, multiply, pair, scaled, unpair};
+use super::table::{Dense, Diagonals, Matrices, TABLE};
 use crate::arithmetic::lanes::rolled;
 use crate::arithmetic::number::Number;
 
 /// A matrix by rows.
-pub type Matrix = [[f64; NODES]; NODES];
+type Matrix = [[f64; NODES]; NODES];
 
 /// (1 − z·matrix)⁻¹·matrix by Gauss and Jordan; no pivoting is needed for z ≤ 0.
 #[inline(always)]
-pub fn quotient<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
+fn quotient<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
     let [mut left, mut right] = [*matrix; 2];
     for i in 0..rolled::<S>(NODES) {
         let i = i % NODES;
@@ -51,13 +55,7 @@ fn added<S: Simd>(row: Pair<S>, factor: f64x4<S>, other: Pair<S>) -> Pair<S> {
 
 /// matrix + factor · left · right.
 #[inline(always)]
-pub fn sum<S: Simd>(
-    simd: S,
-    matrix: &Matrix,
-    factor: f64,
-    left: &Matrix,
-    right: &Matrix,
-) -> Matrix {
+fn sum<S: Simd>(simd: S, matrix: &Matrix, factor: f64, left: &Matrix, right: &Matrix) -> Matrix {
     let mut rows = *matrix;
     for i in 0..rolled::<S>(NODES) {
         let i = i % NODES;
@@ -74,7 +72,7 @@ pub fn sum<S: Simd>(
 
 /// The matrix by rows.
 #[inline(never)]
-pub fn rows(diagonals: &Diagonals) -> Matrix {
+fn rows(diagonals: &Diagonals) -> Matrix {
     let mut rows = [[0.0; NODES]; NODES];
     for i in 0..NODES {
         for j in 0..NODES {
@@ -86,7 +84,7 @@ pub fn rows(diagonals: &Diagonals) -> Matrix {
 
 /// The matrix by diagonals.
 #[inline(never)]
-pub fn diagonals(matrix: &Matrix) -> Diagonals {
+fn diagonals(matrix: &Matrix) -> Diagonals {
     let mut diagonals = [[[0.0; 4]; 2]; NODES];
     for i in 0..NODES {
         for j in 0..NODES {
@@ -94,4 +92,41 @@ pub fn diagonals(matrix: &Matrix) -> Diagonals {
         }
     }
     diagonals
+}
+
+/// Makes them the matrices of steps whose half is 1 with this slope.
+#[inline(never)]
+pub fn with_slope(level: Level, slope: f64, matrices: &mut Matrices) {
+    dispatch!(level, simd => with_slope_by(simd, slope, matrices));
+}
+
+#[inline(always)]
+fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
+    let Dense { place, plain, .. } = &TABLE;
+    let twice = rows(&plain.twice);
+    // W·A, of which W is 1 + J·W·A.
+    let twice = quotient(simd, slope, &twice);
+    let once = rows(&plain.once);
+    let once = sum(simd, &once, slope, &once, &twice);
+    matrices.twice = diagonals(&twice);
+    matrices.once = diagonals(&once);
+    let places = both_permuted(scaled(pair(simd, place), slope));
+    let from = |values| pair(simd, values);
+    matrices.drift = unpair(multiply(simd, &matrices.twice, &places, from(&plain.drift)));
+    matrices.gain = unpair(multiply(simd, &matrices.once, &places, from(&plain.gain)));
+    let mut own = [f64x4::splat(simd, 0.0); NODES];
+    let mut end_drift = load(simd, &plain.end_drift);
+    for k in 0..NODES {
+        own[k] = load(simd, &plain.end[k]) * slope;
+        end_drift = own[k].mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
+    }
+    for j in 0..rolled::<S>(NODES) {
+        let j = j % NODES;
+        let mut end = f64x4::splat(simd, 0.0);
+        for k in 0..NODES {
+            end = own[k].mul_add(f64x4::splat(simd, twice[k][j]), end);
+        }
+        (end + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
+    }
+    end_drift.store_slice(&mut matrices.end_drift);
 }

@@ -10,6 +10,9 @@ use crate::solver::LocalEquation;
 /// States over which it is averaged.
 const AVERAGED: f64 = 16.0;
 
+/// Of fewer states it may be far from the mean of a motion between two turning points.
+const FEW: f64 = 4.0;
+
 /// ∂f/∂x over the last states, and over how many.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct MeanSlope {
@@ -27,8 +30,9 @@ impl MeanSlope {
         states: 0.0,
     };
 
-    pub fn is_unknown(&self) -> bool {
-        self.states == 0.0
+    /// Whether it is still one of few states.
+    pub fn is_vague(&self) -> bool {
+        self.states < FEW
     }
 
     /// Whether the numbers can be those of states.

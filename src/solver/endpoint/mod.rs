@@ -17,6 +17,7 @@ use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
 mod before;
+mod continuation;
 mod length;
 mod matrix;
 mod mean_slope;
@@ -56,7 +57,7 @@ const SAME: f64 = 1e-9;
 /// this many times what it differs by from step to step: there an exact mean is of little use, and of less
 /// for a length that may not come again.
 const SLOPE_OFF: f64 = 0.04;
-const SPREADS_OFF: f64 = 0.5;
+const SPREADS_OFF: f64 = 1.0;
 const SPREADS_OFF_ONCE: f64 = 2.0;
 
 /// A step with dense output takes as much time as so many that have an end only, without a restart.
@@ -127,6 +128,14 @@ impl EndpointSteps {
     /// Whether so many of them, as far as is known, reach so far.
     pub fn reach(&self, rest: f64, steps: f64) -> bool {
         self.length.is_none_or(|length| rest <= steps * length)
+    }
+
+    /// Whether so many as long as the last one, which the load may have bounded, reach so far.
+    #[inline]
+    pub fn surely_reach(&self, rest: f64, steps: f64) -> bool {
+        let last = 2.0 * self.half;
+        self.length
+            .is_some_and(|length| rest <= steps * length.min(last))
     }
 
     /// The equation has changed: f does not go on where it was.
@@ -213,7 +222,7 @@ impl EndpointSteps {
         };
         let splat = |value: f64| f64x4::splat(simd, value);
         let load = local.load_with_sine(splat(0.0), splat(phase[0]));
-        let last_slope = self.product / (self.half * self.half);
+        let last_product = self.product;
         let product = if square < SLOPE_OFF * time_scale * time_scale {
             0.0
         } else {
@@ -233,7 +242,7 @@ impl EndpointSteps {
         };
         let mut guess = match &self.before {
             Some(before) if !self.restarted || half == self.half => {
-                let [low, high] = before.continued(simd, plan, self.half, last_slope);
+                let [low, high] = before.continued(simd, plan, self.half, last_product);
                 // Where f jumps, it goes on from there as it did.
                 let jump = if self.restarted {
                     first - splat(before.acceleration)
@@ -315,8 +324,8 @@ impl EndpointSteps {
             }
             // One fewer next time, or two, if that would have done: an iteration moves the end by what
             // the one before has left.
-            let enough = 0.3 * tolerance.error;
-            let fewer = u32::from(change <= enough) + u32::from(last_change <= enough);
+            let enough = |change: f64| u32::from(change <= tolerance.error);
+            let fewer = enough(change) + enough(last_change);
             self.iterations = (stages.iterations - fewer).max(LEAST_ITERATIONS);
             if change > ROUNDED * tolerance.rounding {
                 self.seen.contraction = self.seen.contraction.max(change / last_change);
@@ -339,7 +348,7 @@ impl EndpointSteps {
                 break None;
             }
             if taken == RENEWED {
-                way.now = way.now.add(DoubleDouble::new(length).scale(taken));
+                way.now = way.now.add(DoubleDouble::times(length, taken));
                 taken = 0.0;
                 local = equation.at(&way.time());
                 if let Some([_, angle]) = local.harmonic() {
@@ -354,7 +363,7 @@ impl EndpointSteps {
             guess = plan.ahead(simd, g, moved);
         };
         self.iterations = self.iterations.min(MOST_ITERATIONS);
-        way.now = way.now.add(DoubleDouble::new(length).scale(taken));
+        way.now = way.now.add(DoubleDouble::times(length, taken));
         if let Some((g, displacement, moved)) = last {
             let acceleration = plan.last(simd, g) + slope * moved;
             if end == Some(End::Reached) {
@@ -393,7 +402,7 @@ impl EndpointSteps {
         let of_this_length = self.half == half;
         // Where every step restarts, it is renewed when their length is looked at.
         let due = self.restarted && self.seen.steps == 0;
-        if self.slope.is_unknown() || self.before.is_none() || !of_this_length || due {
+        if self.slope.is_vague() || self.before.is_none() || !of_this_length || due {
             let positions = match &self.before {
                 Some(before) => shifted(
                     pair(simd, &before.displacement),

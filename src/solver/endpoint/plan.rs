@@ -10,19 +10,14 @@
 //! Source: E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed.,
 //! section IV.8.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use std::f64::consts::FRAC_PI_2;
 
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
-use super::matrix::{diagonals, quotient, rows, sum};
-use super::table::{Dense, Diagonals, Matrices, TABLE};
+use super::continuation::{Bell, resampled};
+use super::matrix::with_slope;
+use super::table::{Diagonals, Matrices, TABLE};
 use crate::arithmetic::lanes::{Lanes, rolled};
-use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
 
 /// Nodes of a step.
@@ -45,6 +40,8 @@ pub struct Plan {
     unscaled: Matrices,
     /// Those of these steps.
     matrices: Matrices,
+    /// What continues g to the next step.
+    bell: Bell,
     /// The angular frequency with which the load alternates.
     frequency: f64,
     /// The time of the nodes since the begin of the step.
@@ -55,7 +52,7 @@ pub struct Plan {
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, values: &[f64]) -> f64x4<S> {
+pub fn load<S: Simd>(simd: S, values: &[f64]) -> f64x4<S> {
     f64x4::from_slice(simd, values)
 }
 
@@ -87,13 +84,13 @@ fn permuted<S: Simd>(values: f64x4<S>) -> [f64x4<S>; 4] {
 }
 
 #[inline(always)]
-fn both_permuted<S: Simd>([low, high]: Pair<S>) -> [[f64x4<S>; 4]; 2] {
+pub fn both_permuted<S: Simd>([low, high]: Pair<S>) -> [[f64x4<S>; 4]; 2] {
     [permuted(low), permuted(high)]
 }
 
 /// `first + matrix · values`, the values permuted.
 #[inline(always)]
-fn multiply<S: Simd>(
+pub fn multiply<S: Simd>(
     simd: S,
     matrix: &Diagonals,
     values: &[[f64x4<S>; 4]; 2],
@@ -132,6 +129,7 @@ impl Plan {
         product: 0.0,
         unscaled: Matrices::NONE,
         matrices: Matrices::NONE,
+        bell: Bell::NONE,
         frequency: 0.0,
         offset: [0.0; NODES],
         turn: [[0.0; NODES]; 2],
@@ -149,6 +147,7 @@ impl Plan {
             }
             self.slope = slope;
             self.scale(simd, half, product != 0.0);
+            self.bell = Bell::of(simd, product);
         }
         if (half, frequency) == (self.half, self.frequency) {
             return;
@@ -227,10 +226,14 @@ impl Plan {
     /// the position by `moved`.
     #[inline(always)]
     pub fn ahead<S: Simd>(&self, simd: S, g: Pair<S>, moved: f64) -> Pair<S> {
-        // The shift comes late and is added last.
-        let none = [f64x4::splat(simd, 0.0); 2];
-        let same = multiply(simd, &TABLE.ahead, &both_permuted(g), none);
-        shifted(same, self.slope * moved)
+        self.bell.ahead(simd, g, self.slope * moved)
+    }
+
+    /// g at the nodes, from its values at the nodes of a step before of half the length `before` with half²·J
+    /// being `product`.
+    #[inline(always)]
+    pub fn resampled<S: Simd>(&self, simd: S, g: Pair<S>, before: f64, product: f64) -> Pair<S> {
+        resampled(simd, g, before, product, pair(simd, &self.offset))
     }
 
     /// g at the end.
@@ -239,30 +242,6 @@ impl Plan {
         let [low, high] = pair(simd, &TABLE.last);
         let sums = Lanes::<S, 4>::store(high.mul_add(g[1], low * g[0]));
         (sums[0] + sums[1]) + (sums[2] + sums[3])
-    }
-
-    /// g at the nodes, from its values at the nodes of a step before of half the length `before`.
-    #[inline(always)]
-    pub fn resampled<S: Simd>(&self, simd: S, g: &[f64; NODES], before: f64) -> Pair<S> {
-        let mut series = [f64x4::splat(simd, 0.0); 2];
-        for j in 0..rolled::<S>(NODES) {
-            let j = j % NODES;
-            let value = f64x4::splat(simd, g[j]);
-            let [low, high] = pair(simd, &TABLE.series[j]);
-            series = [
-                low.mul_add(value, series[0]),
-                high.mul_add(value, series[1]),
-            ];
-        }
-        let series = unpair(series);
-        let inverse = f64x4::splat(simd, 1.0 / before);
-        let one = f64x4::splat(simd, 1.0);
-        let mut values = pair(simd, &self.offset);
-        for k in 0..2 {
-            let u = values[k].mul_add(inverse, one);
-            values[k] = legendre::sum(u, NODES, |degree| u.same(series[degree]));
-        }
-        values
     }
 
     /// What x'_0 alone does to displacement and rate at the nodes.
@@ -306,43 +285,6 @@ impl Plan {
         ((sums[0] + sums[1]) + (sums[2] + sums[3])).store_slice(&mut ends);
         ends
     }
-}
-
-/// Makes them the matrices of steps whose half is 1 with this slope.
-#[inline(never)]
-fn with_slope(level: Level, slope: f64, matrices: &mut Matrices) {
-    dispatch!(level, simd => with_slope_by(simd, slope, matrices));
-}
-
-#[inline(always)]
-fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
-    let Dense { place, plain, .. } = &TABLE;
-    let twice = rows(&plain.twice);
-    // W·A, of which W is 1 + J·W·A.
-    let twice = quotient(simd, slope, &twice);
-    let once = rows(&plain.once);
-    let once = sum(simd, &once, slope, &once, &twice);
-    matrices.twice = diagonals(&twice);
-    matrices.once = diagonals(&once);
-    let places = both_permuted(scaled(pair(simd, place), slope));
-    let from = |values| pair(simd, values);
-    matrices.drift = unpair(multiply(simd, &matrices.twice, &places, from(&plain.drift)));
-    matrices.gain = unpair(multiply(simd, &matrices.once, &places, from(&plain.gain)));
-    let mut own = [f64x4::splat(simd, 0.0); NODES];
-    let mut end_drift = load(simd, &plain.end_drift);
-    for k in 0..NODES {
-        own[k] = load(simd, &plain.end[k]) * slope;
-        end_drift = own[k].mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
-    }
-    for j in 0..rolled::<S>(NODES) {
-        let j = j % NODES;
-        let mut end = f64x4::splat(simd, 0.0);
-        for k in 0..NODES {
-            end = own[k].mul_add(f64x4::splat(simd, twice[k][j]), end);
-        }
-        (end + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
-    }
-    end_drift.store_slice(&mut matrices.end_drift);
 }
 
 /// factor · values.

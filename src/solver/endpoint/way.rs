@@ -22,6 +22,7 @@ pub struct Way {
 
 impl Way {
     /// Present time of the model.
+    #[inline]
     pub fn time(&self) -> DoubleDouble {
         self.begin.add(self.now)
     }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::collocation::{Guess, Substep, solve_by_16};
 use super::dense_output::{History, Segment};
-use super::endpoint::{End, EndpointSteps, Way};
+use super::endpoint::{End, EndpointSteps};
 use super::extremes::Extremes;
 use super::integrator::{Integrator, Method, Mode, is_length};
 use super::iteration::Diverged;
@@ -22,6 +22,7 @@ use super::step_control::{
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
+mod endpoint_only;
 mod substeps;
 
 /// First step in units of the motion's time scale.
@@ -33,12 +34,6 @@ const FEW: f64 = 4.0;
 /// The growth of a step lets the next one grow as much again: how long steps may be varies with the motion's phase,
 /// by powers of ten where the motion turns far out.
 const ACCELERATION: i32 = 1;
-
-/// So many endpoint-only steps take no longer than one with dense output.
-const PER_DENSE_STEP: f64 = 2.0;
-
-/// More endpoint-only steps are not made at once, since all are lost where a limit is met.
-const MOST_AT_ONCE: u32 = 8;
 
 /// After a short step that was refused, the next 14 of its length are not tried.
 const FORGOTTEN: f64 = 1.05;
@@ -168,17 +163,17 @@ impl Trajectory {
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
         let first = self.restarts.at_every_step && self.restarts.advances == 1;
-        if first && self.method.takes_endpoint_steps {
-            let mut there = self.takes_short_step(equation, clock, step);
-            if !there && self.history.is_empty() && self.takes_endpoint_steps(equation, step) {
-                let end = self.go_straight_to_end(equation, clock, step);
-                there = end == End::Reached;
-                unobstructed = end != End::Blocked;
-            }
-            if there {
-                *clock = clock.plus(step).renormalized();
-                return Ok(Progress::Whole);
-            }
+        let mut there = first
+            && self.method.takes_endpoint_steps
+            && self.takes_short_step(equation, clock, step);
+        if !there && self.may_go_straight(step) && self.takes_endpoint_steps(equation, step) {
+            let end = self.go_straight_to_end(equation, clock, step);
+            there = end == End::Reached;
+            unobstructed = end != End::Blocked;
+        }
+        if there {
+            *clock = clock.plus(step).renormalized();
+            return Ok(Progress::Whole);
         }
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
@@ -191,27 +186,6 @@ impl Trajectory {
             unobstructed = free;
             Ok(shift)
         })
-    }
-
-    /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
-    /// they are shorter, for where nothing but its end is.
-    #[inline(never)]
-    fn takes_endpoint_steps<E: Equation>(&self, equation: &E, rest: f64) -> bool {
-        let steps = &self.method;
-        if !steps.takes_endpoint_steps {
-            return false;
-        }
-        let many = || {
-            steps.endpoint.are_faster(rest, self.method.next_length) && !self.may_repeat(equation)
-        };
-        if !self.restarts.at_every_step {
-            many()
-        } else if self.settings.control.repeated().is_loose() {
-            // A few take no longer than to look for an orbit.
-            steps.endpoint.reach(rest, FEW) || many()
-        } else {
-            steps.endpoint.reach(rest, PER_DENSE_STEP)
-        }
     }
 
     /// Whether a motion that repeats is looked for.
@@ -272,69 +246,6 @@ impl Trajectory {
             Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
             None => (lower, upper),
         }
-    }
-
-    /// Follows the motion from its start for the time `step`, which a few endpoint-only steps take, and
-    /// moves the start there. Where they do not reach it, they have not been made.
-    #[inline(never)]
-    fn go_straight_to_end<E: Equation>(
-        &mut self,
-        equation: &E,
-        clock: &DoubleDouble,
-        step: f64,
-    ) -> End {
-        let mut way = Way {
-            begin: *clock,
-            now: DoubleDouble::ZERO,
-            state: self.start.state,
-            target: DoubleDouble::new(step),
-            bounds: self.bounds(),
-            budget: MOST_AT_ONCE,
-        };
-        let end = self.go(equation, &mut way);
-        if end == End::Reached {
-            self.start.state = way.state;
-        } else {
-            self.method.endpoint.restart();
-        }
-        end
-    }
-
-    /// Goes the way by endpoint-only steps as far as they can.
-    fn go<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
-        let control = self.step_control(false);
-        let steps = &mut self.method.endpoint;
-        steps.go(self.settings.level, equation, control, way)
-    }
-
-    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
-    /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
-    /// extreme.
-    fn go_to_end<E: Equation>(
-        &mut self,
-        equation: &E,
-        target: DoubleDouble,
-        budget: &mut u32,
-    ) -> (DoubleDouble, bool) {
-        let begin = self.history.end();
-        self.arrive(begin);
-        let mut way = Way {
-            begin: self.start.time.add(begin),
-            now: DoubleDouble::ZERO,
-            state: self.state(),
-            target: target.sub(begin),
-            bounds: self.bounds(),
-            budget: *budget,
-        };
-        let end = self.go(equation, &mut way);
-        *budget = way.budget;
-        let shift = if end == End::Reached {
-            target
-        } else {
-            begin.add(way.now)
-        };
-        self.stand_at(way.time(), way.state);
-        (shift, end != End::Blocked)
     }
 
     /// Adds one more step with dense output; `rest` is the time still asked for. Returns by how

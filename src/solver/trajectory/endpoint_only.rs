@@ -1,0 +1,114 @@
+//! When a motion takes endpoint-only steps, and how it follows them.
+
+use super::{FEW, Trajectory};
+use crate::arithmetic::double_double::DoubleDouble;
+use crate::solver::Equation;
+use crate::solver::endpoint::{End, Way};
+use crate::solver::integrator::Mode;
+
+/// So many endpoint-only steps take no longer than one with dense output.
+const PER_DENSE_STEP: f64 = 2.0;
+
+/// More endpoint-only steps are not made at once, since all are lost where a limit is met.
+const MOST_AT_ONCE: u32 = 8;
+
+impl Trajectory {
+    /// Whether endpoint-only steps may go the way from the start at once, which takes fewer instructions than the loop
+    /// over steps: those of a way on which they meet something are lost.
+    #[inline]
+    pub(super) fn may_go_straight(&mut self, step: f64) -> bool {
+        if self.restarts.advances > 1 {
+            self.restarts.at_every_step = false;
+        }
+        let few = |motion: &Trajectory| {
+            let most = f64::from(MOST_AT_ONCE);
+            !motion.records_extremes() && motion.method.endpoint.surely_reach(step, most)
+        };
+        let nothing_ahead = matches!(self.mode, Mode::Dense { stop: None, .. });
+        nothing_ahead && self.history.is_empty() && (self.restarts.at_every_step || few(self))
+    }
+
+    /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
+    /// they are shorter, for where nothing but its end is.
+    #[inline(never)]
+    pub(super) fn takes_endpoint_steps<E: Equation>(&self, equation: &E, rest: f64) -> bool {
+        let steps = &self.method;
+        if !steps.takes_endpoint_steps {
+            return false;
+        }
+        let many = || {
+            steps.endpoint.are_faster(rest, self.method.next_length) && !self.may_repeat(equation)
+        };
+        if !self.restarts.at_every_step {
+            many()
+        } else if self.settings.control.repeated().is_loose() {
+            // A few take no longer than to look for an orbit.
+            steps.endpoint.reach(rest, FEW) || many()
+        } else {
+            steps.endpoint.reach(rest, PER_DENSE_STEP)
+        }
+    }
+
+    /// Follows the motion from its start for the time `step`, which a few endpoint-only steps take, and
+    /// moves the start there. Where they do not reach it, they have not been made.
+    #[inline(never)]
+    pub(super) fn go_straight_to_end<E: Equation>(
+        &mut self,
+        equation: &E,
+        clock: &DoubleDouble,
+        step: f64,
+    ) -> End {
+        let mut way = Way {
+            begin: *clock,
+            now: DoubleDouble::ZERO,
+            state: self.start.state,
+            target: DoubleDouble::new(step),
+            bounds: self.bounds(),
+            budget: MOST_AT_ONCE,
+        };
+        let end = self.go(equation, &mut way);
+        if end == End::Reached {
+            self.start.state = way.state;
+        } else {
+            self.method.endpoint.restart();
+        }
+        end
+    }
+
+    /// Goes the way by endpoint-only steps as far as they can.
+    fn go<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
+        let control = self.step_control(false);
+        let steps = &mut self.method.endpoint;
+        steps.go(self.settings.level, equation, control, way)
+    }
+
+    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
+    /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
+    /// extreme.
+    pub(super) fn go_to_end<E: Equation>(
+        &mut self,
+        equation: &E,
+        target: DoubleDouble,
+        budget: &mut u32,
+    ) -> (DoubleDouble, bool) {
+        let begin = self.history.end();
+        self.arrive(begin);
+        let mut way = Way {
+            begin: self.start.time.add(begin),
+            now: DoubleDouble::ZERO,
+            state: self.state(),
+            target: target.sub(begin),
+            bounds: self.bounds(),
+            budget: *budget,
+        };
+        let end = self.go(equation, &mut way);
+        *budget = way.budget;
+        let shift = if end == End::Reached {
+            target
+        } else {
+            begin.add(way.now)
+        };
+        self.stand_at(way.time(), way.state);
+        (shift, end != End::Blocked)
+    }
+}
