@@ -33,9 +33,9 @@ pub const LANES: usize = 8;
 /// A number for each lane.
 pub type PerLane = [f64; LANES];
 
-/// From these tolerances on a method that looks back on fewer values takes longer steps.
-const LOOSE: f64 = 3e-8;
-const MEDIUM: f64 = 3e-10;
+/// From this tolerance on a method that looks back on fewer values is faster. One that looks back on 11 takes .93 to 1
+/// of the time where f hardly depends on x', and twice the time where it does: the more values, the less is stable.
+const LOOSE: f64 = 3e-10;
 
 /// The equations x'' = f(t, x, x') of all lanes, each seen from a time of its own.
 pub trait Ensemble {
@@ -109,8 +109,7 @@ pub fn follow<F: Ensemble>(
     let span = [start, end];
     match tolerance {
         LOOSE.. => Queue::<9, _>::new(level, motions, span, tolerance).follow(ensemble),
-        MEDIUM.. => Queue::<10, _>::new(level, motions, span, tolerance).follow(ensemble),
-        _ => Queue::<11, _>::new(level, motions, span, tolerance).follow(ensemble),
+        _ => Queue::<10, _>::new(level, motions, span, tolerance).follow(ensemble),
     }
 }
 
