@@ -29,10 +29,6 @@ pub const BLOCK: usize = 32;
 /// By which factor (ωh)² may become larger than where the formula is stable.
 pub const STIFFER: f64 = 1.2;
 
-/// The largest correction of a position in a step, over the tolerance and the position. What is
-/// corrected is the method's error by one order less: the error that stays is far smaller.
-pub const CORRECTION: f64 = 0.02;
-
 /// Steps from one estimate of the error to the next.
 const ESTIMATED: usize = 4;
 
@@ -106,6 +102,14 @@ impl<const POINTS: usize> Falkner<POINTS> {
 
     /// The correction falls with the step like its power of this order.
     pub const FALL: f64 = (POINTS + 1) as f64;
+
+    /// The largest correction of a position in a step, over the tolerance and the position. What is corrected is the
+    /// method's error by one order less: the error that stays is smaller. Of 2500 motions near escape, the worst
+    /// misses 1.2 tolerances times its amplification by 9 values, 5.1 by 10.
+    pub const CORRECTION: f64 = match POINTS {
+        ..=9 => 0.05,
+        _ => 0.02,
+    };
 
     /// The angle of the natural motion in a step up to which the method is used. It is stable a tenth
     /// beyond, where the roots of its recurrence are smaller than 1.

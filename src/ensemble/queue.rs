@@ -3,7 +3,7 @@
 
 use fearless_simd::Level;
 
-use super::multistep::{BLOCK, CORRECTION, Falkner, HISTORY, LaneStates, STIFFER};
+use super::multistep::{BLOCK, Falkner, HISTORY, LaneStates, STIFFER};
 use super::{Arrival, Ensemble, InitialValueProblem, LANES, history, turning_point};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::extremes::Extremes;
@@ -82,7 +82,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             start,
             end,
             tolerance,
-            correction: CORRECTION * tolerance,
+            correction: Falkner::<POINTS>::CORRECTION * tolerance,
             next: 0,
             arrivals: vec![Ok(blank); motions.len()],
         }
