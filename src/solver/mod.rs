@@ -6,7 +6,8 @@
 //!   loop over steps; [`position_origin`]: where positions are counted from;
 //! * [`collocation`]: one step of Gauss collocation with dense output;
 //! * `endpoint`: steps of which only the end is asked for;
-//! * `short_step`: short steps of 4 nodes, where the equation changes at each of them;
+//! * `short_step`: short steps of 4 nodes, where the equation changes at each of them; `rotation`: the sines of an
+//!   alternating load in them;
 //! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;
 //! * [`dense_output`]: the polynomials that steps leave behind;
 //! * [`limits`], [`orbit`], [`extremes`]: where a motion stops, repeats, has swung to;
@@ -24,6 +25,7 @@ pub mod linearized;
 pub mod orbit;
 mod outcome;
 pub mod position_origin;
+mod rotation;
 mod short_step;
 pub mod step_control;
 mod tables;

@@ -12,6 +12,7 @@
 use fearless_simd::{Level, Simd, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
+use super::rotation::Rotation;
 use super::step_control::{StepControl, UNSEEN};
 use super::tables::product::product_in_lanes;
 use super::tables::{ENDS_4, GAUSS_4};
@@ -45,10 +46,17 @@ pub struct ShortStep<'a> {
     pub trend: &'a mut Trend,
 }
 
-/// What f was in the last short step, from which it is guessed what it will be in the next
-/// one: hosts mostly take equal steps, along which they change the equation smoothly.
+/// What the last short step leaves for the next one: hosts mostly take equal steps, along which they change the
+/// equation smoothly.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Trend {
+    course: Course,
+    rotation: Rotation,
+}
+
+/// What f was in a step, from which it is guessed what it will be in the next one.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+struct Course {
     /// f at the end without what both parts of the load add to it.
     unloaded: f64,
     /// Its slope there times the length of the step.
@@ -76,18 +84,27 @@ impl Trend {
     fn at_rest<L: LocalEquation>(local: &L, state: State) -> Trend {
         let [one, other] = L::parts(local.load(0.0));
         let response = local.sensitivity(state).load;
-        Trend {
+        let course = Course {
             unloaded: local.acceleration_from(state) - (one * response[0] + other * response[1]),
             slope: 0.0,
             response,
             sine: local.harmonic().map_or(0.0, |[_, angle]| angle.sin()),
+        };
+        Trend {
+            course,
+            rotation: Rotation::UNKNOWN,
         }
+    }
+
+    /// Whether the numbers can be those of a motion.
+    pub fn is_valid(&self) -> bool {
+        self.rotation.is_valid()
     }
 }
 
 impl ShortStep<'_> {
     /// Moves the state to its end and tells what f was. False where it is too long or
-    /// does not stay between the bounds; then nothing has changed.
+    /// does not stay between the bounds; then the state has not changed.
     pub fn take<E: Equation>(&mut self, level: Level, equation: &E) -> bool {
         // All of it, since what is not done in lanes takes as many instructions.
         dispatch!(level, simd => self.take_with(simd, equation).is_some())
@@ -99,7 +116,7 @@ impl ShortStep<'_> {
         let (start, control) = (*self.state, self.control);
         let solved = solve(simd, &local, control, start, self.length, self.trend)?;
         let (part, scale) = (solved.part, start.position.abs());
-        let response = solved.trend.response;
+        let response = solved.course.response;
         let allowed = (control.tolerance * part).max(UNSEEN) * scale;
         let good = solved.stays_between(self.bounds, start)
             && solved.is_within(control.end_tolerance_within(part) * scale)
@@ -108,7 +125,7 @@ impl ShortStep<'_> {
             return None;
         }
         *self.state = solved.end;
-        *self.trend = solved.trend;
+        self.trend.course = solved.course;
         Some(())
     }
 }
@@ -127,7 +144,7 @@ struct Solved {
     /// The state at its end.
     end: State,
     /// What f was.
-    trend: Trend,
+    course: Course,
     /// By how much the Legendre coefficients of f, degree by degree, can move the
     /// position: their size times the square of half the length.
     size: [f64; 4],
@@ -202,7 +219,7 @@ fn solve<S: Simd, L: LocalEquation>(
     control: StepControl,
     start: State,
     length: f64,
-    trend: &Trend,
+    trend: &mut Trend,
 ) -> Option<Solved> {
     let half = 0.5 * length;
     let square = half * half;
@@ -210,17 +227,18 @@ fn solve<S: Simd, L: LocalEquation>(
 
     let place: f64x4<S> = Lanes::load(simd, &GAUSS_4.place);
     let offset = place * fill(half);
-    let sine = match local.harmonic() {
-        Some([frequency, angle]) => offset.mul_add(fill(frequency), fill(angle)).sin(),
-        None => fill(0.0),
+    let (sine, end_sine) = match local.harmonic() {
+        Some(harmonic) => trend.rotation.sines(simd, harmonic, length),
+        None => (fill(0.0), Some(0.0)),
     };
+    let course = &trend.course;
     let load = local.load_with_sine(offset, sine);
     let line = offset.mul_add(fill(start.rate), fill(start.position));
     // Of an f that jumps as the load does and then rises evenly.
     // By the sine at the end of the last step, since that of this one is waited for.
-    let [one, other] = L::parts(local.load_with_sine(0.0, trend.sine));
-    let first = trend.unloaded + (one * trend.response[0] + other * trend.response[1]);
-    let slope = trend.slope;
+    let [one, other] = L::parts(local.load_with_sine(0.0, course.sine));
+    let first = course.unloaded + (one * course.response[0] + other * course.response[1]);
+    let slope = course.slope;
     let gain = offset * place.mul_add(fill(slope * 0.25), fill(first));
     let mut bent = (offset * offset) * place.mul_add(fill(slope * (1.0 / 12.0)), fill(first * 0.5));
     let mut position = line + bent;
@@ -273,14 +291,12 @@ fn solve<S: Simd, L: LocalEquation>(
             }
         }
     }
-    // From the nodes, since another sine takes as long as half an iteration.
-    let sine = if local.load_frequency() == 0.0 {
-        0.0
-    } else {
+    let sine = end_sine.unwrap_or_else(|| {
+        // From the nodes, since another sine takes as long as half an iteration.
         let ends: f64x4<S> = product_in_lanes(simd, &ENDS_4, &sine.store());
         let [_, _, end, _] = Lanes::<S, 4>::store(ends);
         end
-    };
+    });
     let series: f64x4<S> = product_in_lanes(simd, &GAUSS_4.series, &f);
     let added: f64x4<S> = product_in_lanes(simd, &ENDS_4, &f);
     let weight: f64x4<S> = Lanes::load(simd, &[square, half, 1.0, 1.0]);
@@ -293,7 +309,7 @@ fn solve<S: Simd, L: LocalEquation>(
         end: State { position, rate },
         // Stored one by one and loaded so: numbers that were stored one by one could not be loaded
         // together before they are in the cache.
-        trend: Trend {
+        course: Course {
             unloaded: last - (one * response[0] + other * response[1]),
             slope,
             response,
@@ -380,10 +396,10 @@ mod tests {
             };
             let time_scale = equation.time_scale(state);
             let length = (0.15 + 0.1 * random(4)) * time_scale;
-            let trend = Trend::at_rest(&equation, state);
+            let mut trend = Trend::at_rest(&equation, state);
             let control = StepControl::new(1e-13);
             let solved = dispatch!(Level::new(), simd => {
-                solve(simd, &equation, control, state, length, &trend)
+                solve(simd, &equation, control, state, length, &mut trend)
             });
             let Some(solved) = solved else {
                 continue;

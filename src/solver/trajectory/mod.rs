@@ -73,6 +73,7 @@ impl Method for Steps {
     fn is_valid(&self, _: &Trajectory) -> bool {
         is_length(self.next_length)
             && self.longest_short_step.is_none_or(|length| length > 0.0)
+            && self.trend.is_none_or(|trend| trend.is_valid())
             && self.endpoint.are_valid()
     }
 }
