@@ -10,7 +10,8 @@ import fmpy
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-LARGEST_BINARY = 400_000
+# On Windows the linker adds 40 kB of zig's run-time library, whose functions it cannot leave out one by one.
+LARGEST_BINARY = {"linux64": 400_000, "aarch64-linux": 400_000, "darwin64": 400_000, "win64": 470_000}
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +29,7 @@ def binaries(archive):
 
 def test_binaries_are_small(binaries):
     sizes = {name.split("/")[1]: len(data) for name, data in binaries.items()}
-    assert {folder: size for folder, size in sizes.items() if size > LARGEST_BINARY} == {}
+    assert {folder: size for folder, size in sizes.items() if size > LARGEST_BINARY[folder]} == {}
 
 
 def test_binaries_hold_no_path_of_the_build_machine(binaries):
