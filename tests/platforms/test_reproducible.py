@@ -10,7 +10,6 @@ import pytest
 
 from conftest import FMUS, MODELS, REPOSITORY, packed
 
-
 # Both FMUs are compiled anew for every platform: ten minutes, and more where the machine is busy.
 pytestmark = pytest.mark.timeout(3600)
 
