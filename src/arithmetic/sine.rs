@@ -22,6 +22,21 @@ const SINE: [f64; TERMS] = {
     terms
 };
 
+/// The sine of the sum of two angles from the sine and cosine of each.
+#[inline(always)]
+pub fn sine_of_sum<N: Number>([sine, cosine]: [N; 2], [by_sine, by_cosine]: [N; 2]) -> N {
+    by_cosine.mul_add(sine, by_sine * cosine)
+}
+
+/// Sine and cosine of the sum of two angles from those of each.
+#[inline(always)]
+pub fn turned([sine, cosine]: [f64; 2], [by_sine, by_cosine]: [f64; 2]) -> [f64; 2] {
+    [
+        sine * by_cosine + cosine * by_sine,
+        cosine * by_cosine - sine * by_sine,
+    ]
+}
+
 /// The sine by its Taylor series after taking out multiples of π. Exact reduction below 1e6 radians;
 /// absolute error below 3e-16.
 #[inline(always)]

@@ -13,6 +13,7 @@ use super::dense_output::VALIDATION_TOLERANCE;
 use super::tables::GAUSS_4;
 use crate::arithmetic::lanes::Lanes;
 use crate::arithmetic::number::Number;
+use crate::arithmetic::sine::{sine_of_sum, turned};
 
 /// Sine and cosine are worked out anew after so many steps: each one rounds by some 2e-16.
 const MOST_ROTATIONS: u32 = 32;
@@ -85,18 +86,12 @@ impl Rotation {
             && self.left > 0
             && off.abs() <= SAME
         {
-            let [sine, cosine] = self.point;
-            let [sines, cosines] = &turns.to_nodes;
-            let sines: f64x4<S> = Lanes::load(simd, sines);
-            let cosines: f64x4<S> = Lanes::load(simd, cosines);
-            let [end_sine, end_cosine] = turns.to_end;
-            self.point = [
-                sine * end_cosine + cosine * end_sine,
-                cosine * end_cosine - sine * end_sine,
-            ];
+            let begin = self.point.map(fill);
+            let to_nodes = turns.to_nodes.each_ref().map(|values| Lanes::load(simd, values));
+            let at_nodes = sine_of_sum(begin, to_nodes);
+            self.point = turned(self.point, turns.to_end);
             self.angle += turn;
             self.left -= 1;
-            let at_nodes = cosines.mul_add(fill(sine), sines * fill(cosine));
             return (at_nodes, Some(self.point[0]));
         }
         let place: f64x4<S> = Lanes::load(simd, &GAUSS_4.place);

@@ -19,6 +19,7 @@ use super::matrix::with_slope;
 use super::table::{Diagonals, Matrices, TABLE};
 use crate::arithmetic::lanes::{Lanes, rolled};
 use crate::arithmetic::number::Number;
+use crate::arithmetic::sine::{sine_of_sum, turned};
 
 /// Nodes of a step.
 pub const NODES: usize = 8;
@@ -197,23 +198,18 @@ impl Plan {
     /// The sine of the load at the nodes, where it has this phase at the begin.
     #[inline(always)]
     pub fn sine<S: Simd>(&self, simd: S, [sine, cosine]: [f64; 2]) -> Pair<S> {
-        let by_sine = scaled(pair(simd, &self.turn[0]), cosine);
-        let by_cosine = pair(simd, &self.turn[1]);
-        let sine = f64x4::splat(simd, sine);
+        let phase = [sine, cosine].map(|value| f64x4::splat(simd, value));
+        let [sines, cosines] = [pair(simd, &self.turn[0]), pair(simd, &self.turn[1])];
         [
-            by_cosine[0].mul_add(sine, by_sine[0]),
-            by_cosine[1].mul_add(sine, by_sine[1]),
+            sine_of_sum(phase, [sines[0], cosines[0]]),
+            sine_of_sum(phase, [sines[1], cosines[1]]),
         ]
     }
 
     /// The phase at the end from that at the begin.
     #[inline(always)]
-    pub fn turned(&self, [sine, cosine]: [f64; 2]) -> [f64; 2] {
-        let [by_sine, by_cosine] = self.turn_end;
-        [
-            sine * by_cosine + cosine * by_sine,
-            cosine * by_cosine - sine * by_sine,
-        ]
+    pub fn turned(&self, phase: [f64; 2]) -> [f64; 2] {
+        turned(phase, self.turn_end)
     }
 
     /// The time of the nodes since a moment that lies `passed` before the begin.
