@@ -87,7 +87,10 @@ impl Rotation {
             && off.abs() <= SAME
         {
             let begin = self.point.map(fill);
-            let to_nodes = turns.to_nodes.each_ref().map(|values| Lanes::load(simd, values));
+            let to_nodes = turns
+                .to_nodes
+                .each_ref()
+                .map(|values| Lanes::load(simd, values));
             let at_nodes = sine_of_sum(begin, to_nodes);
             self.point = turned(self.point, turns.to_end);
             self.angle += turn;

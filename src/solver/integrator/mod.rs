@@ -25,7 +25,6 @@ mod mode;
 mod validation;
 
 pub use mode::Mode;
-pub use validation::is_length;
 
 /// What rounding may leave of a step that has been made.
 const LAST_BITS: f64 = 1e-18;
@@ -98,9 +97,17 @@ impl Cursor {
 pub(super) struct Restarts {
     /// Advances since the last restart.
     pub advances: u32,
-    /// The last start was good for a single advance: the host changes the equation at each
-    /// communication point, and a longer step would be thrown away.
-    pub at_every_step: bool,
+    /// The start before this one was good for a single advance.
+    after_single_advance: bool,
+}
+
+impl Restarts {
+    /// Whether the host changes the equation at each communication point, so that a longer step would be thrown
+    /// away.
+    #[inline(always)]
+    pub fn at_every_step(&self) -> bool {
+        self.after_single_advance && self.advances <= 1
+    }
 }
 
 /// How far the motion has swung.
@@ -124,6 +131,8 @@ pub struct Integrator<M: Method> {
     pub(super) cursor: Cursor,
     pub(super) mode: Mode<M::Event>,
     pub(super) restarts: Restarts,
+    /// Length of the next step with dense output.
+    pub(super) next_length: Option<f64>,
     recording: Option<Recording>,
     pub(super) method: M,
 }
@@ -153,8 +162,9 @@ impl<M: Method> Integrator<M> {
             mode: Mode::UNKNOWN,
             restarts: Restarts {
                 advances: 0,
-                at_every_step: false,
+                after_single_advance: false,
             },
+            next_length: None,
             recording: None,
             method,
         }
@@ -220,7 +230,7 @@ impl<M: Method> Integrator<M> {
     /// Starts anew from the present position and rate.
     #[inline(always)]
     pub(super) fn start_from_present(&mut self) {
-        self.restarts.at_every_step = self.restarts.advances == 1;
+        self.restarts.after_single_advance = self.restarts.advances == 1;
         self.restarts.advances = 0;
         // Without a step it stands at its start.
         if !self.history.is_empty() {
@@ -296,9 +306,6 @@ impl<M: Method> Integrator<M> {
     ) -> Result<Progress<M::Event>, Failure> {
         if self.history.is_empty() {
             self.start.time = *clock;
-        }
-        if self.restarts.advances > 1 {
-            self.restarts.at_every_step = false;
         }
         match self.mode {
             Mode::Dense { .. } => {}

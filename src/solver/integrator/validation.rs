@@ -47,6 +47,7 @@ impl<M: Method> Integrator<M> {
                 }
                 Mode::AtRest => first.is_none() && self.start.state.rate == 0.0,
             }
+            && (self.next_length.iter()).all(|length| *length > 0.0 && length.is_finite())
             && self.is_between_limits()
             && self.method.is_valid(self)
     }
@@ -91,9 +92,4 @@ impl<M: Method> Integrator<M> {
         });
         recorded && range.contains(&self.position()) && self.rate().is_finite()
     }
-}
-
-/// Whether this can be the length of the next step, where it is known.
-pub fn is_length(length: Option<f64>) -> bool {
-    length.is_none_or(|length| length > 0.0 && length.is_finite())
 }

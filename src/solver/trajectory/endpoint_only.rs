@@ -16,16 +16,13 @@ impl Trajectory {
     /// Whether endpoint-only steps may go the way from the start at once, which takes fewer instructions than the loop
     /// over steps: those of a way on which they meet something are lost.
     #[inline]
-    pub(super) fn may_go_straight(&mut self, step: f64) -> bool {
-        if self.restarts.advances > 1 {
-            self.restarts.at_every_step = false;
-        }
-        let few = |motion: &Trajectory| {
+    pub(super) fn may_go_straight(&self, step: f64) -> bool {
+        let few = || {
             let most = f64::from(MOST_AT_ONCE);
-            !motion.records_extremes() && motion.method.endpoint.surely_reach(step, most)
+            !self.records_extremes() && self.method.endpoint.surely_reach(step, most)
         };
         let nothing_ahead = matches!(self.mode, Mode::Dense { stop: None, .. });
-        nothing_ahead && self.history.is_empty() && (self.restarts.at_every_step || few(self))
+        nothing_ahead && self.history.is_empty() && (self.restarts.at_every_step() || few())
     }
 
     /// Whether the next steps need no dense output, where the motion is asked for after the time `rest`:
@@ -36,10 +33,9 @@ impl Trajectory {
         if !steps.takes_endpoint_steps {
             return false;
         }
-        let many = || {
-            steps.endpoint.are_faster(rest, self.method.next_length) && !self.may_repeat(equation)
-        };
-        if !self.restarts.at_every_step {
+        let many =
+            || steps.endpoint.are_faster(rest, self.next_length) && !self.may_repeat(equation);
+        if !self.restarts.at_every_step() {
             many()
         } else if self.settings.control.repeated().is_loose() {
             // A few take no longer than to look for an orbit.

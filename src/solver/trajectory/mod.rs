@@ -11,7 +11,7 @@ use super::collocation::{Guess, Substep, solve_by_16};
 use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps};
 use super::extremes::Extremes;
-use super::integrator::{Integrator, Method, Mode, is_length};
+use super::integrator::{Integrator, Method, Mode};
 use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
@@ -51,8 +51,6 @@ const RESOLVED: f64 = 0.1;
 /// What each kind of steps leaves for the next of its kind.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Steps {
-    /// Length of the next step with dense output.
-    next_length: Option<f64>,
     /// Whether a motion that repeats is looked for.
     follows_orbits: bool,
     /// Whether steps of which only the end is asked for may have fewer than 16 nodes.
@@ -71,8 +69,7 @@ impl Method for Steps {
     const MOST_STEPS: u32 = 2_000_000;
 
     fn is_valid(&self, _: &Trajectory) -> bool {
-        is_length(self.next_length)
-            && self.longest_short_step.is_none_or(|length| length > 0.0)
+        self.longest_short_step.is_none_or(|length| length > 0.0)
             && self.trend.is_none_or(|trend| trend.is_valid())
             && self.endpoint.are_valid()
     }
@@ -86,7 +83,6 @@ impl Trajectory {
     /// `limits`.
     pub fn new(start: State, limits: Limits, tolerance: f64) -> Trajectory {
         let steps = Steps {
-            next_length: None,
             follows_orbits: true,
             takes_endpoint_steps: true,
             trend: None,
@@ -119,7 +115,7 @@ impl Trajectory {
     /// Starts anew from the present state: the equation has changed.
     #[inline]
     pub fn restart(&mut self) {
-        let after_short_step = self.restarts.at_every_step
+        let after_short_step = self.restarts.at_every_step()
             && self.restarts.advances == 1
             && self.method.trend.is_some()
             && self.history.is_empty();
@@ -163,7 +159,7 @@ impl Trajectory {
     ) -> Result<Progress, Failure> {
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
-        let first = self.restarts.at_every_step && self.restarts.advances == 1;
+        let first = self.restarts.at_every_step();
         let mut there = first
             && self.method.takes_endpoint_steps
             && self.takes_short_step(equation, clock, step);
@@ -233,7 +229,7 @@ impl Trajectory {
     /// What a step may miss: less where its error is made again and again, by an orbit that repeats or by
     /// restarts at every step.
     fn step_control(&self, repeats: bool) -> StepControl {
-        if repeats || self.restarts.at_every_step {
+        if repeats || self.restarts.at_every_step() {
             self.settings.control.repeated()
         } else {
             self.settings.control
@@ -256,12 +252,8 @@ impl Trajectory {
     /// The length of a step that was too short to go on.
     fn extend<E: Equation>(&mut self, equation: &E, rest: f64) -> Result<DoubleDouble, f64> {
         let follows_orbits = self.method.follows_orbits;
-        let alone = self.restarts.at_every_step;
-        let few = alone
-            && self
-                .method
-                .next_length
-                .is_none_or(|length| rest < FEW * length);
+        let alone = self.restarts.at_every_step();
+        let few = alone && self.next_length.is_none_or(|length| rest < FEW * length);
         let repeats = !few && self.may_repeat(equation);
         // Nothing of a step that ends where the equation changes is asked for but its end.
         let only_end = alone && !repeats && !self.records_extremes();
@@ -307,7 +299,7 @@ impl Trajectory {
         let control = self.step_control(repeats);
         let scale = state.position.abs();
         let time_scale = local.time_scale(state);
-        let free = match self.method.next_length {
+        let free = match self.next_length {
             Some(length) => length,
             None => FIRST_STEP * time_scale,
         };
@@ -349,7 +341,7 @@ impl Trajectory {
             Ok((step, factor))
         })?;
         // A step cut short says little about the next one.
-        self.method.next_length = Some(if length == most {
+        self.next_length = Some(if length == most {
             free
         } else {
             length * factor

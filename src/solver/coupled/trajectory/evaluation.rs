@@ -5,7 +5,7 @@ use crate::arithmetic::legendre;
 use crate::solver::coupled::polynomials::{LegendreCoefficients, Polynomials, TERMS};
 use crate::solver::coupled::{FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::solver::dense_output::VALIDATION_TOLERANCE;
-use crate::solver::integrator::{Method, Present, is_length};
+use crate::solver::integrator::{Method, Present};
 
 impl Trajectory {
     /// The present first-order states.
@@ -65,8 +65,7 @@ impl Method for Carried {
 
     fn is_valid(&self, motion: &Trajectory) -> bool {
         let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
-        is_length(self.next_length)
-            && motion.full_start().is_finite()
+        motion.full_start().is_finite()
             && self
                 .slopes_before
                 .is_none_or(|(acceleration, slopes)| acceleration.is_finite() && finite(&slopes))

@@ -93,14 +93,14 @@ impl Trajectory {
         let demands = Demands {
             states,
             integrals,
-            few: self.restarts.at_every_step,
-            control: if repeats || self.restarts.at_every_step {
+            few: self.restarts.at_every_step(),
+            control: if repeats || self.restarts.at_every_step() {
                 self.settings.control.repeated()
             } else {
                 StepControl::new(SHARE * self.settings.control.tolerance)
             },
         };
-        let most = if self.restarts.at_every_step {
+        let most = if self.restarts.at_every_step() {
             rest
         } else {
             f64::INFINITY
@@ -154,7 +154,7 @@ impl Trajectory {
             .iter()
             .map(|slope| slope.relaxation);
         let relaxation = relaxations.fold(0.0, f64::max);
-        let mut free = self.method.next_length.unwrap_or(FIRST_STEP * scale);
+        let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
             free = free.min(self.transient(local, start, &sizes, demands));
@@ -234,7 +234,7 @@ impl Trajectory {
             Ok((step, factor))
         })?;
         // A step cut short says little about the next one.
-        self.method.next_length = Some(if length == most && factor >= 1.0 {
+        self.next_length = Some(if length == most && factor >= 1.0 {
             free.max(length * factor.min(2.0))
         } else {
             length * factor

@@ -36,8 +36,6 @@ pub type Progress = PlainProgress<Event>;
 /// What a coupled system carries along beside position and rate.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Carried {
-    /// Length of the next step.
-    next_length: Option<f64>,
     /// First-order states and integrals at the start.
     internal: [f64; MOST_STATES],
     integrals: [f64; MOST_INTEGRALS],
@@ -72,7 +70,6 @@ impl Trajectory {
         tolerance: f64,
     ) -> Trajectory {
         let carried = Carried {
-            next_length: None,
             internal: start.internal,
             integrals: start.integrals,
             polynomials: None,
