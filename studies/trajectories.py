@@ -33,9 +33,7 @@ def follow(actuator: Actuator, name: str, communication_step: float, tolerance: 
     for previous, row in itertools.pairwise(rows):
         span = row["t"] - previous["t"]
         whole_steps = int(span / communication_step + 1e-9)
-        for step in range(whole_steps):
-            # a sum of many steps drifts, and the actuator follows the clock of its host
-            actuator.time = previous["t"] + step * communication_step
+        for _ in range(whole_steps):
             actuator.advance(communication_step)
         remainder = span - whole_steps * communication_step
         if remainder > 1e-9:

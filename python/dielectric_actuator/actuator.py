@@ -87,6 +87,15 @@ class Actuator:
             self._folder.cleanup()
 
     @property
+    def time(self) -> float:
+        """The present communication point. Set it to follow another clock."""
+        return self._time
+
+    @time.setter
+    def time(self, time: float) -> None:
+        self._time, self._rounded = time, 0.0
+
+    @property
     def variables(self) -> Mapping[str, ScalarVariable]:
         """What the model description says of each variable: ``unit``, ``description``, ``start``, ``min``, ``max``."""
         return self._variables.by_name
@@ -227,7 +236,10 @@ class Actuator:
                 return False
             self._explain(refusal)
             raise
-        self.time += communication_step
+        # A sum of many steps would drift: what one addition rounds off is added with the next.
+        step = communication_step + self._rounded
+        before, self._time = self._time, self._time + step
+        self._rounded = step - (self._time - before)
         return True
 
     def run(
