@@ -279,8 +279,8 @@ impl SiMotion {
                 self.lead = reached.since(end);
                 return Ok(Progress::Whole);
             }
-            // In s.
-            let after = step - end.since(reached) * second;
+            // In s. Where the motion stops at once, rounding must not lead the host's clock back.
+            let after = (step - end.since(reached) * second).max(0.0);
             *clock = begin.plus(after).renormalized();
             self.lead = reached.since(self.scales.time(*clock));
             let limit = match progress {

@@ -269,3 +269,21 @@ fn breakdown_has_three_consequences() {
     let fault = host.instance.do_step(0.0, 1e-5).expect_err("the end");
     assert!(format!("{fault:?}").contains("broke down"), "{fault:?}");
 }
+
+/// Where the field is beyond breakdown as soon as the voltage is set, the step ends where it began: never before.
+#[test]
+fn a_step_that_ends_at_once_does_not_lead_back_in_time() {
+    for k in 1..200 {
+        let values = [("E_breakdown", 62e6), ("on_breakdown", 3.0)];
+        let mut host = Host::begun(&values);
+        let step = 1e-15 * f64::from(k);
+        host.instance.do_step(0.0, step).expect("below breakdown");
+        host.set("voltage", 700.0).expect("legal");
+        host.instance.do_step(step, step).expect_err("the end");
+        let reached = host.instance.last_successful_time();
+        assert!(
+            (step..=step * (1.0 + 1e-9)).contains(&reached),
+            "{step:e}: {reached:e}"
+        );
+    }
+}
