@@ -18,8 +18,8 @@ pub struct Ensemble {
     voltage: PerLane,
     prestress: PerLane,
     amplitude: PerLane,
-    /// Sine of ωt + ϑ, and by how much it grew in the last step.
-    sine: [PerLane; 2],
+    /// The alternating part of the voltage, and by how much it grew in the last step.
+    alternating: [PerLane; 2],
     /// Sine of ωh of a step h, and 2 − 2 cos ωh.
     turn: [PerLane; 2],
 }
@@ -38,7 +38,7 @@ impl Ensemble {
             voltage: [0.0; LANES],
             prestress: [0.0; LANES],
             amplitude: [0.0; LANES],
-            sine: [[0.0; LANES]; 2],
+            alternating: [[0.0; LANES]; 2],
             turn: [[0.0; LANES]; 2],
         }
     }
@@ -86,8 +86,9 @@ impl ensemble::Ensemble for Ensemble {
     fn see_from(&mut self, lane: usize, motion: &Motion, time: &DoubleDouble) {
         let (sine, cosine) = motion.drive.angle(*time).sin_cos();
         let [by_cosine, by_sine] = self.turn.map(|row| row[lane]);
-        self.sine[0][lane] = sine;
-        self.sine[1][lane] = 0.5 * by_sine * sine + by_cosine * cosine;
+        let growth = 0.5 * by_sine * sine + by_cosine * cosine;
+        self.alternating[0][lane] = self.amplitude[lane] * sine;
+        self.alternating[1][lane] = self.amplitude[lane] * growth;
     }
 
     #[inline(always)]
@@ -103,14 +104,14 @@ impl ensemble::Ensemble for Ensemble {
             voltage: load(&self.voltage),
             prestress: load(&self.prestress),
             amplitude: load(&self.amplitude),
-            sine: [load(&self.sine[0]), load(&self.sine[1])],
+            alternating: [load(&self.alternating[0]), load(&self.alternating[1])],
             turn: load(&self.turn[1]),
         }
     }
 
     #[inline(always)]
     fn keep<S: Simd, V: Lanes<S, LANES>>(&mut self, packed: &Packed<V>) {
-        self.sine = packed.sine.map(Lanes::store);
+        self.alternating = packed.alternating.map(Lanes::store);
     }
 }
 
@@ -121,7 +122,7 @@ pub struct Packed<N> {
     voltage: N,
     prestress: N,
     amplitude: N,
-    sine: [N; 2],
+    alternating: [N; 2],
     turn: N,
 }
 
@@ -130,19 +131,19 @@ impl<N: Number> ensemble::Packed<N> for Packed<N> {
     /// "Introduction to Numerical Analysis", section 2.3.2) keeps the digits where ωh is small.
     #[inline(always)]
     fn turn(&mut self) {
-        let [sine, growth] = self.sine;
-        let growth = growth - self.turn * sine;
-        self.sine = [sine + growth, growth];
+        let [voltage, growth] = self.alternating;
+        let growth = growth - self.turn * voltage;
+        self.alternating = [voltage + growth, growth];
     }
 
     #[inline(always)]
-    fn acceleration(&self, position: N, rate: N) -> N {
-        let voltage = self.sine[0].mul_add(self.amplitude, self.voltage);
+    fn acceleration(&self, position: N, way: N, step: N, inverse: N) -> N {
+        let voltage = self.voltage + self.alternating[0];
         let load = Load {
             voltage_squared: voltage * voltage,
             prestress: self.prestress,
         };
-        motion::acceleration(&self.coefficients, load, position, rate)
+        motion::acceleration_in_steps(&self.coefficients, load, [position, way], [step, inverse])
     }
 
     #[inline(always)]

@@ -160,8 +160,10 @@ impl<const POINTS: usize> Falkner<POINTS> {
     }
 }
 
-/// The motions of all lanes, each with steps of its own length, and what a block of steps leaves.
+/// The motions of all lanes, each with steps of its own length, and what a block of steps leaves. A row
+/// that crossed a cache line would be loaded in two parts.
 #[derive(Clone, Debug)]
+#[repr(align(64))]
 pub struct LaneStates {
     pub position: PerLane,
     pub rate: PerLane,
@@ -246,7 +248,7 @@ impl LaneStates {
             position = f.mul_add(fill(formula.twice[0]), (position + way) + twice);
             way = f.mul_add(fill(formula.once[0]), way + once);
             packed.turn();
-            f = packed.acceleration(position, way * inverse) * square;
+            f = packed.acceleration(position, way, step, inverse);
             largest = largest.max(f.abs());
             range = [range[0].min(position), range[1].max(position)];
             self.f[HISTORY + i] = f.store();

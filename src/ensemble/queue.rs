@@ -11,7 +11,7 @@ use crate::solver::trajectory::{Failure, Progress, Trajectory};
 use crate::solver::{Equation, LocalEquation, State};
 
 /// A correction that is this much smaller than allowed asks for longer steps.
-const IDLE_CORRECTION: f64 = 1.0 / 250.0;
+const IDLE_CORRECTION: f64 = 1.0 / 60.0;
 
 /// Blocks between two looks at a lane that needs none: longer steps are thought of, and the
 /// equation is seen from the time anew.
@@ -55,8 +55,9 @@ pub struct Queue<'a, const POINTS: usize, E> {
     tolerance: f64,
     /// The largest correction of a position in a step, over the position.
     correction: f64,
-    /// The motion that the next free lane takes.
-    next: usize,
+    /// The natural frequencies at the start, the highest first, and which motions these are: those with
+    /// the most steps come first, so that no lane is left with a long one at the end.
+    waiting: std::vec::IntoIter<(f64, usize)>,
     arrivals: Vec<Result<Arrival, Failure>>,
 }
 
@@ -76,6 +77,12 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             extremes: Extremes::at(0.0),
             progress: Progress::Whole,
         };
+        let frequency = |motion: &InitialValueProblem<E>| {
+            let seen = motion.equation.seen_from(&start);
+            seen.natural_frequency(motion.start)
+        };
+        let mut waiting: Vec<_> = motions.iter().map(frequency).zip(0..).collect();
+        waiting.sort_by(|(one, _), (other, _)| other.total_cmp(one));
         Queue {
             level,
             motions,
@@ -83,7 +90,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             end,
             tolerance,
             correction: Falkner::<POINTS>::CORRECTION * tolerance,
-            next: 0,
+            waiting: waiting.into_iter(),
             arrivals: vec![Ok(blank); motions.len()],
         }
     }
@@ -130,14 +137,14 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         packed: &mut LaneStates,
         index: usize,
     ) -> Option<Lane> {
-        while let Some(&InitialValueProblem {
-            ref equation,
-            start,
-            limits,
-        }) = self.motions.get(self.next)
-        {
+        while let Some((_, motion)) = self.waiting.next() {
+            let &InitialValueProblem {
+                ref equation,
+                start,
+                limits,
+            } = &self.motions[motion];
             let mut lane = Lane {
-                motion: self.next,
+                motion,
                 time: self.start,
                 passed: 0,
                 due: 0,
@@ -146,7 +153,6 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
                 known: POINTS,
                 changes: 0,
             };
-            self.next += 1;
             packed.begin_with(index, Extremes::at(start.position), limits);
             // A motion that repeats is followed no further than it does.
             let takes = F::takes(equation) && !equation.repeats();
@@ -311,7 +317,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         }
         let mut extremes = packed.extremes_of(index);
         if low < extremes.lowest || high > extremes.highest {
-            for turn in turning_point::turns(packed, index, state.rate) {
+            for turn in turning_point::turns_beyond_extremes(packed, index, state) {
                 extremes.include(turn);
             }
             extremes.include(packed.position[index]);

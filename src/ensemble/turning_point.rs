@@ -1,12 +1,17 @@
 //! Where a motion turns between two steps of the multistep method.
 
 use super::multistep::{BLOCK, HISTORY, LaneStates, own, product};
+use crate::solver::State;
 
 /// Values of f through which the polynomial goes.
 const POINTS: usize = 8;
 
 /// Newton's iterations; the first guess is good to the second order.
 const MOST_ITERATIONS: u32 = 6;
+
+/// How far the motion may go from the nearer end of a step until it turns, over the square of its way hx' over
+/// h²f. It would be a half if f were constant.
+const FARTHEST: f64 = 0.6;
 
 /// Row k: by the values of f at σ = 0, −1, …, the coefficient of σᵏ of the polynomial through them.
 static POWERS: [[f64; POINTS]; POINTS] = powers();
@@ -41,17 +46,29 @@ const fn reciprocals(more: usize) -> [f64; POINTS] {
     reciprocals
 }
 
-/// The positions at which the motion of a lane turns in the block that has been taken, which
-/// began at `rate`.
-pub fn turns(motions: &LaneStates, lane: usize, rate: f64) -> impl Iterator<Item = f64> + '_ {
-    let first = motions.step[lane] * rate;
+/// The positions at which the motion of a lane turns in the block that has been taken, which began at
+/// `state`: all those that are beyond its extremes, and perhaps some others.
+pub fn turns_beyond_extremes(
+    motions: &LaneStates,
+    lane: usize,
+    state: State,
+) -> impl Iterator<Item = f64> + '_ {
+    let extremes = motions.extremes_of(lane);
+    let first = [state.position, motions.step[lane] * state.rate];
     (0..BLOCK).filter_map(move |i| {
-        let before = if i == 0 {
-            first
+        let end = |i: usize| [motions.positions[i][lane], motions.ways[i][lane]];
+        let (before, after) = (if i == 0 { first } else { end(i - 1) }, end(i));
+        if before[1] * after[1] >= 0.0 {
+            return None;
+        }
+        let ([position, way], f) = if before[1].abs() < after[1].abs() {
+            (before, motions.f[i + HISTORY - 1][lane])
         } else {
-            motions.ways[i - 1][lane]
+            (after, motions.f[i + HISTORY][lane])
         };
-        (before * motions.ways[i][lane] < 0.0).then(|| turn(motions, lane, i, before))
+        let reach = FARTHEST * (way * way / f).abs();
+        (position - reach < extremes.lowest || position + reach > extremes.highest)
+            .then(|| turn(motions, lane, i, before[1]))
     })
 }
 
@@ -89,8 +106,10 @@ fn turn(motions: &LaneStates, lane: usize, i: usize, before: f64) -> f64 {
 mod tests {
     use super::super::LANES;
     use super::*;
+    use crate::solver::extremes::Extremes;
 
-    /// x = cos t, sampled every 0.1, turns at −1 between two of the samples.
+    /// x = cos t, sampled every 0.1, turns at −1 between two of the samples. It is not looked for where the
+    /// motion went farther before.
     #[test]
     fn the_turn_of_a_cosine_is_found() {
         let step = 0.1;
@@ -107,9 +126,23 @@ mod tests {
             let t = begin + (k as f64 - HISTORY as f64 + 1.0) * step;
             motions.f[k] = [-step * step * t.cos(); LANES];
         }
-        let found: Vec<f64> = turns(&motions, 3, -begin.sin()).collect();
-        assert_eq!(found.len(), 1);
+        let state = State {
+            position: begin.cos(),
+            rate: -begin.sin(),
+        };
+        let found = |motions: &LaneStates| -> Vec<f64> {
+            turns_beyond_extremes(motions, 3, state).collect()
+        };
+        motions.set_extremes(3, Extremes::at(1.0));
+        let turns = found(&motions);
+        assert_eq!(turns.len(), 1);
         // The polynomial misses the eighth difference of f, 1e-8, by some 1e-5 of it.
-        assert!((found[0] + 1.0).abs() < 1e-12, "{}", found[0]);
+        assert!((turns[0] + 1.0).abs() < 1e-12, "{}", turns[0]);
+        let farther = Extremes {
+            lowest: -1.001,
+            highest: 1.0,
+        };
+        motions.set_extremes(3, farther);
+        assert!(found(&motions).is_empty());
     }
 }
