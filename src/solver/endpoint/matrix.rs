@@ -1,73 +1,39 @@
-//! The matrices of a slope: products and inverses of matrices over the nodes.
+//! The matrices of a slope.
+//!
+//! The loops stay loops, of a length that the compiler does not see: unrolled, they would be larger and no faster.
 
 #![expect(
     clippy::needless_range_loop,
     reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
 )]
 
+use std::hint::black_box;
+
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
-use super::plan::{NODES, Pair, both_permuted, load, multiply, pair, scaled, unpair};
+use super::plan::{NODES, both_permuted, load, multiply, pair, scaled, unpair};
 use super::table::{Dense, Diagonals, Matrices, TABLE};
-use crate::arithmetic::lanes::rolled;
 use crate::arithmetic::number::Number;
 
 /// A matrix by rows.
 type Matrix = [[f64; NODES]; NODES];
 
-/// (1 − z·matrix)⁻¹·matrix by Gauss and Jordan; no pivoting is needed for z ≤ 0.
+/// Makes the matrices [A, B] to [W·A, B·W], where W = (1 − slope·A)⁻¹. The slope begins to act at one node after the
+/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0.
 #[inline(always)]
-fn quotient<S: Simd>(simd: S, z: f64, matrix: &Matrix) -> Matrix {
-    let [mut left, mut right] = [*matrix; 2];
-    for i in 0..rolled::<S>(NODES) {
-        let i = i % NODES;
-        left[i] = unpair(scaled(pair(simd, &left[i]), -z));
-        left[i][i] += 1.0;
-    }
-    for p in 0..rolled::<S>(NODES) {
+fn include_slope<S: Simd>(simd: S, slope: f64, matrices: &mut [Matrix; 2]) {
+    for p in 0..black_box(NODES) {
         let p = p % NODES;
-        let pivot = 1.0 / left[p][p];
-        let own = [
-            scaled(pair(simd, &left[p]), pivot),
-            scaled(pair(simd, &right[p]), pivot),
-        ];
-        [left[p], right[p]] = [unpair(own[0]), unpair(own[1])];
-        for r in 0..rolled::<S>(NODES) {
-            let r = r % NODES;
-            if r != p {
-                let factor = f64x4::splat(simd, -left[r][p]);
-                left[r] = unpair(added(pair(simd, &left[r]), factor, own[0]));
-                right[r] = unpair(added(pair(simd, &right[r]), factor, own[1]));
-            }
+        let own = &matrices[0][p];
+        let own = scaled(pair(simd, own), slope / (1.0 - slope * own[p]));
+        let rows = matrices.as_flattened_mut();
+        for r in 0..black_box(2 * NODES) {
+            let row = &mut rows[r % (2 * NODES)];
+            let factor = f64x4::splat(simd, row[p]);
+            let [low, high] = pair(simd, row);
+            *row = unpair([own[0].mul_add(factor, low), own[1].mul_add(factor, high)]);
         }
     }
-    right
-}
-
-/// row + factor · other.
-#[inline(always)]
-fn added<S: Simd>(row: Pair<S>, factor: f64x4<S>, other: Pair<S>) -> Pair<S> {
-    [
-        other[0].mul_add(factor, row[0]),
-        other[1].mul_add(factor, row[1]),
-    ]
-}
-
-/// matrix + factor · left · right.
-#[inline(always)]
-fn sum<S: Simd>(simd: S, matrix: &Matrix, factor: f64, left: &Matrix, right: &Matrix) -> Matrix {
-    let mut rows = *matrix;
-    for i in 0..rolled::<S>(NODES) {
-        let i = i % NODES;
-        let mut row = pair(simd, &rows[i]);
-        for k in 0..rolled::<S>(NODES) {
-            let k = k % NODES;
-            let factor = f64x4::splat(simd, factor * left[i][k]);
-            row = added(row, factor, pair(simd, &right[k]));
-        }
-        rows[i] = unpair(row);
-    }
-    rows
 }
 
 /// The matrix by rows.
@@ -103,13 +69,11 @@ pub fn with_slope(level: Level, slope: f64, matrices: &mut Matrices) {
 #[inline(always)]
 fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
     let Dense { place, plain, .. } = &TABLE;
-    let twice = rows(&plain.twice);
-    // W·A, of which W is 1 + J·W·A.
-    let twice = quotient(simd, slope, &twice);
-    let once = rows(&plain.once);
-    let once = sum(simd, &once, slope, &once, &twice);
-    matrices.twice = diagonals(&twice);
-    matrices.once = diagonals(&once);
+    let mut both = [rows(&plain.twice), rows(&plain.once)];
+    include_slope(simd, slope, &mut both);
+    let [twice, once] = &both;
+    matrices.twice = diagonals(twice);
+    matrices.once = diagonals(once);
     let places = both_permuted(scaled(pair(simd, place), slope));
     let from = |values| pair(simd, values);
     matrices.drift = unpair(multiply(simd, &matrices.twice, &places, from(&plain.drift)));
@@ -120,7 +84,7 @@ fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
         own[k] = load(simd, &plain.end[k]) * slope;
         end_drift = own[k].mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
     }
-    for j in 0..rolled::<S>(NODES) {
+    for j in 0..black_box(NODES) {
         let j = j % NODES;
         let mut end = f64x4::splat(simd, 0.0);
         for k in 0..NODES {
