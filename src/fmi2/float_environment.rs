@@ -6,29 +6,32 @@
 //!
 //! On processors other than x86-64 and 64-bit Arm nothing is done.
 
-/// The environment that was found; put back when this is dropped.
-pub struct FloatEnvironment {
-    found: register::Words,
-}
+use std::mem::MaybeUninit;
 
-impl FloatEnvironment {
-    /// Notes the environment and makes it the default one.
-    #[inline(always)]
-    pub fn entered() -> FloatEnvironment {
-        let found = register::read();
-        let wanted = register::with_default_control(found);
-        if wanted != found {
-            register::write(wanted);
-        }
-        FloatEnvironment { found }
+use register::Words;
+
+/// Runs `body` in the default environment, and restores the one that was found, also after a panic.
+#[inline(always)]
+pub fn in_default<T>(body: impl FnOnce() -> T) -> T {
+    // They stay in one place, since each copy would be waited for.
+    let mut place = MaybeUninit::uninit();
+    let found = register::read(&mut place);
+    let wanted = register::with_default_control(*found);
+    if wanted != *found {
+        register::write(&wanted);
     }
+    let _restored = Restored(found);
+    body()
 }
 
-impl Drop for FloatEnvironment {
+/// The environment that was found; put back when this is dropped.
+struct Restored<'a>(&'a Words);
+
+impl Drop for Restored<'_> {
     #[inline(always)]
     fn drop(&mut self) {
         // Written without a comparison: reading takes ten times as long as writing.
-        register::write(self.found);
+        register::write(self.0);
     }
 }
 
@@ -50,21 +53,20 @@ mod register {
     }
 
     #[inline(always)]
-    pub fn read() -> Words {
-        let mut words = MaybeUninit::<Words>::uninit();
+    pub fn read(place: &mut MaybeUninit<Words>) -> &Words {
         // SAFETY: writes the register's 32 bits to a place of that size. Not marked as free of
         // other effects, so that no access to memory is moved across it.
         unsafe {
-            asm!("stmxcsr [{}]", in(reg) words.as_mut_ptr(), options(nostack, preserves_flags));
-            words.assume_init()
+            asm!("stmxcsr [{}]", in(reg) place.as_mut_ptr(), options(nostack, preserves_flags));
+            place.assume_init_ref()
         }
     }
 
     #[inline(always)]
-    pub fn write(words: Words) {
+    pub fn write(words: &Words) {
         // SAFETY: the words were read from the register, some of its defined bits changed.
         unsafe {
-            asm!("ldmxcsr [{}]", in(reg) &raw const words, options(nostack, preserves_flags));
+            asm!("ldmxcsr [{}]", in(reg) words, options(nostack, preserves_flags));
         }
     }
 }
@@ -73,6 +75,7 @@ mod register {
 #[cfg(target_arch = "aarch64")]
 mod register {
     use std::arch::asm;
+    use std::mem::MaybeUninit;
 
     pub type Words = [u64; 2];
 
@@ -82,7 +85,7 @@ mod register {
     }
 
     #[inline(always)]
-    pub fn read() -> Words {
+    pub fn read(place: &mut MaybeUninit<Words>) -> &Words {
         let (control, status): (u64, u64);
         // SAFETY: reads two registers. Not marked as free of other effects, so that no access to
         // memory is moved across it.
@@ -90,11 +93,11 @@ mod register {
             asm!("mrs {}, fpcr", "mrs {}, fpsr", out(reg) control, out(reg) status,
                 options(nostack, preserves_flags));
         }
-        [control, status]
+        place.write([control, status])
     }
 
     #[inline(always)]
-    pub fn write([control, status]: Words) {
+    pub fn write([control, status]: &Words) {
         // SAFETY: the words were read from the registers, or are the default.
         unsafe {
             asm!("msr fpcr, {}", "msr fpsr, {}", in(reg) control, in(reg) status,
@@ -105,13 +108,17 @@ mod register {
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod register {
+    use std::mem::MaybeUninit;
+
     pub type Words = ();
 
     pub fn with_default_control(words: Words) -> Words {
         words
     }
 
-    pub fn read() -> Words {}
+    pub fn read(place: &mut MaybeUninit<Words>) -> &Words {
+        place.write(())
+    }
 
-    pub fn write(_: Words) {}
+    pub fn write(_: &Words) {}
 }

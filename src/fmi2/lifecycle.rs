@@ -6,8 +6,9 @@ use fmi::fmi2::binding::*;
 use libc::c_char;
 
 use super::calls::Call;
+use super::float_environment::in_default;
 use super::host::Host;
-use super::{Component, computing, contained, guarded, null, slice};
+use super::{Component, contained, guarded, null, slice};
 use crate::instance::{Fault, Instance, Interface};
 use crate::model::Model;
 
@@ -161,7 +162,7 @@ fn instantiated<M: Model>(
     host: Host,
     make: impl FnOnce() -> Result<Instance<M>, Fault>,
 ) -> fmi2Component {
-    match contained(|| computing(make), Err) {
+    match contained(|| in_default(make), Err) {
         Ok(instance) => Box::into_raw(Box::new(Component { instance, host })).cast(),
         Err(fault) => {
             host.refuse("fmi2Instantiate", fault);

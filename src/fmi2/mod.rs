@@ -45,7 +45,7 @@ use crate::instance::{Fault, Instance, Message, Severity, Type};
 use crate::model::Model;
 use calls::Call;
 pub use exchange::*;
-use float_environment::FloatEnvironment;
+use float_environment::in_default;
 use host::Host;
 pub use lifecycle::*;
 pub use signatures::EXPORTED_NAMES;
@@ -77,13 +77,6 @@ fn contained<T>(body: impl FnOnce() -> T, failed: impl FnOnce(Fault) -> T) -> T 
                 .into(),
         })
     })
-}
-
-/// Runs `body` in the default floating-point environment, and restores the host's after it.
-#[inline(always)]
-fn computing<T>(body: impl FnOnce() -> T) -> T {
-    let _environment = FloatEnvironment::entered();
-    body()
 }
 
 /// Runs `body` on the component behind the pointer, if the phase permits the call: the way from C
@@ -132,7 +125,7 @@ fn guarded_in_place<M: Model>(
         Ok(None) => None,
         told => Some(Box::new(told)),
     };
-    match contained(|| computing(body), |fault| Some(Box::new(Err(fault)))) {
+    match contained(|| in_default(body), |fault| Some(Box::new(Err(fault)))) {
         None => fmi2Status_fmi2OK,
         Some(told) => component.tell(function, *told),
     }

@@ -92,7 +92,7 @@ fn changing(level: Level, motions: &[Motion], step: f64) -> Vec<State> {
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn no_level_follows_the_floating_point_environment_of_the_host() {
-    use dielectric_elastomer_actuator::fmi2::float_environment::FloatEnvironment;
+    use dielectric_elastomer_actuator::fmi2::float_environment::in_default;
 
     const DEFAULT: u32 = 0x1f80;
     #[expect(unsafe_code, reason = "sets the environment as a host does")]
@@ -103,10 +103,7 @@ fn no_level_follows_the_floating_point_environment_of_the_host() {
             std::arch::asm!("stmxcsr [{}]", in(reg) &mut before);
             std::arch::asm!("ldmxcsr [{}]", in(reg) &environment);
         }
-        let result = {
-            let _ours = FloatEnvironment::entered();
-            call()
-        };
+        let result = in_default(call);
         // SAFETY: reads MXCSR and puts back what was there before.
         unsafe {
             std::arch::asm!("stmxcsr [{}]", in(reg) &mut after);
