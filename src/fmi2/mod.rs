@@ -251,6 +251,28 @@ pub unsafe extern "C" fn fmi2SetReal<M: Model>(
         // SAFETY: the host's arrays hold `nvr` values each, or are null.
         match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
             (Some(&[reference]), Some(&[value])) => instance.set_held(reference, value),
+            _ => false,
+        }
+    };
+    if done_at_once::<M>(c, Call::Set, at_once) {
+        return fmi2Status_fmi2OK;
+    }
+    // SAFETY: the arguments are the host's, as they came.
+    unsafe { set_real::<M>(c, vr, nvr, value) }
+}
+
+/// [`fmi2SetReal`] of other than one held input. It has the C calling convention, so that the compiler makes a jump
+/// of its call.
+#[inline(never)]
+unsafe extern "C" fn set_real<M: Model>(
+    c: fmi2Component,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    value: *const fmi2Real,
+) -> fmi2Status {
+    let at_once = |instance: &mut Instance<M>| {
+        // SAFETY: the host's arrays hold `nvr` values each, or are null.
+        match unsafe { (readable(vr, nvr), readable(value, nvr)) } {
             (Some(references), Some(values)) => instance.set_all_held(references, values),
             _ => false,
         }

@@ -74,18 +74,31 @@ fn not_of_type<M: Model>(reference: u32, wanted: Type) -> Fault {
 
 /// The bit of an input in [`Instance::fresh_derivatives`]: inputs are counted among themselves.
 pub(super) fn input_bit<M: Model>(reference: u32) -> u64 {
-    const { assert!(input_count::<M>() <= u64::BITS as usize, "too many inputs") };
-    let before = &M::VARIABLES[..reference as usize];
-    1 << before.iter().filter(|row| row.is_input()).count()
+    const { assert!(M::INPUTS.len() <= u64::BITS as usize, "too many inputs") };
+    let place = M::INPUTS.iter().position(|input| *input == reference);
+    place.map_or(0, |place| 1 << place)
 }
 
-const fn input_count<M: Model>() -> usize {
-    let (mut count, mut row) = (0, 0);
-    while row < M::VARIABLES.len() {
-        count += M::VARIABLES[row].is_input() as usize;
-        row += 1;
+/// A place in a scene.
+type PlaceIn<Scene> = fn(&mut Scene) -> &mut Polynomial;
+
+/// Where an input lies in the scene, and its limits; inputs are counted among themselves.
+const fn nth_input<M: Model>(nth: usize) -> Option<(PlaceIn<M::Scene>, [f64; 2])> {
+    if nth >= M::INPUTS.len() {
+        return None;
     }
-    count
+    let variable = &M::VARIABLES[M::INPUTS[nth] as usize];
+    match (&variable.access, &variable.kind) {
+        (Access::Input { of, .. }, Kind::Real { min, max, .. }) => Some((*of, [*min, *max])),
+        _ => None,
+    }
+}
+
+/// Whether the value lies between the limits. Compares bits: the floating-point environment is neither asked nor
+/// changed.
+#[inline(always)]
+fn lies_between(value: f64, [min, max]: [f64; 2]) -> bool {
+    min.total_cmp(&value).is_le() && value.total_cmp(&max).is_le()
 }
 
 impl<M: Model> Instance<M> {
@@ -168,15 +181,24 @@ impl<M: Model> Instance<M> {
     }
 
     /// The input of this value reference, if it is constant and may have this value.
-    #[inline]
+    #[inline(always)]
     fn held_input(&mut self, reference: u32, value: f64) -> Option<&mut Polynomial> {
-        let variable = M::VARIABLES.get(reference as usize)?;
-        let Access::Input { of, .. } = variable.access else {
-            return None;
-        };
+        const { assert!(M::INPUTS.len() <= 4, "as many cases as inputs") };
+        match M::INPUTS.iter().position(|input| *input == reference)? {
+            0 => self.nth_held_input::<0>(value),
+            1 => self.nth_held_input::<1>(value),
+            2 => self.nth_held_input::<2>(value),
+            _ => self.nth_held_input::<3>(value),
+        }
+    }
+
+    /// [`Instance::held_input`] of an input whose place and limits the compiler knows.
+    #[inline(always)]
+    fn nth_held_input<const NTH: usize>(&mut self, value: f64) -> Option<&mut Polynomial> {
+        let (of, limits) = const { nth_input::<M>(NTH) }?;
         let input = of(&mut self.scene);
         let same = input.value().to_bits() == value.to_bits();
-        (input.is_constant() && (same || variable.contains(value))).then_some(input)
+        (input.is_constant() && (same || lies_between(value, limits))).then_some(input)
     }
 
     /// Sets the variables of type `wanted` with these value references. In model

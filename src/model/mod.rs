@@ -40,6 +40,9 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// Further names of variables.
     const ALIASES: &'static [Alias] = &[];
 
+    /// Value references of the inputs.
+    const INPUTS: &'static [u32];
+
     /// Value references of the continuous states.
     const STATES: &'static [u32];
 

@@ -36,6 +36,7 @@ impl Model for Nondimensional {
     const GUID: &'static str = guid::text(&GUID);
     const VARIABLES: &'static [Variable<Nondimensional>] = &VARIABLES;
     const ALIASES: &'static [Alias] = &ALIASES;
+    const INPUTS: &'static [u32] = &variables::inputs::<Nondimensional, 2>(&VARIABLES);
     const STATES: &'static [u32] = &variables::states::<Nondimensional, 2>(&VARIABLES);
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Nondimensional, 2>(&VARIABLES);
     /// λ − λ_min and λ_max − λ.

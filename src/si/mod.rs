@@ -60,6 +60,7 @@ impl Model for Si {
     const GUID: &'static str = guid::text(&GUID);
     const VARIABLES: &'static [Variable<Si>] = &VARIABLES;
     const ALIASES: &'static [Alias] = &ALIASES;
+    const INPUTS: &'static [u32] = &variables::inputs::<Si, 4>(&VARIABLES);
     const STATES: &'static [u32] = &variables::states::<Si, STATE_COUNT>(&VARIABLES);
     const DERIVATIVES: &'static [u32] = &variables::derivatives::<Si, STATE_COUNT>(&VARIABLES);
     /// λ − λ_min, λ_max − λ, and the margin of the true field to breakdown as a part of the breakdown field.

@@ -228,6 +228,22 @@ pub const fn states<M: Model, const COUNT: usize>(table: &[Variable<M>]) -> [u32
     states
 }
 
+/// Value references of the inputs; another number than `COUNT` does not compile.
+#[must_use]
+pub const fn inputs<M: Model, const COUNT: usize>(table: &[Variable<M>]) -> [u32; COUNT] {
+    let mut inputs = [0; COUNT];
+    let (mut found, mut row) = (0, 0);
+    while row < table.len() {
+        if table[row].is_input() {
+            inputs[found] = row as u32;
+            found += 1;
+        }
+        row += 1;
+    }
+    assert!(found == COUNT, "another number of inputs");
+    inputs
+}
+
 /// Value references of the derivatives of the continuous states, in the order of
 /// the states.
 #[must_use]
@@ -295,19 +311,6 @@ impl<M: Model> Variable<M> {
     #[must_use]
     pub const fn is_input(&self) -> bool {
         matches!(self.access, Access::Input { .. })
-    }
-
-    /// Whether `value` lies between the limits of a real variable. Compares bits: the
-    /// floating-point environment is neither asked nor changed.
-    #[must_use]
-    #[inline]
-    pub fn contains(&self, value: f64) -> bool {
-        match &self.kind {
-            Kind::Real { min, max, .. } => {
-                min.total_cmp(&value).is_le() && value.total_cmp(max).is_le()
-            }
-            _ => false,
-        }
     }
 
     /// Why `value` may not be set, in words, if it may not.
