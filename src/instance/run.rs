@@ -115,30 +115,33 @@ impl<M: Model> Run<M> {
         self.motion.scene_changed();
     }
 
-    /// Refuses a step that makes no sense. Returns by how much the host's clock is ahead of ours, 0 where
-    /// both agree.
+    /// Refuses a step that makes no sense. Returns by how much the host's clock is ahead of ours, nothing
+    /// where both agree.
     #[inline]
     pub(super) fn check_step(
         &mut self,
         current: f64,
         step: f64,
-        stop_time: Option<f64>,
-    ) -> Result<f64, Fault> {
+        stop_time: &Option<f64>,
+    ) -> Result<Option<f64>, Fault> {
         let [shortest, longest] = STEP_RANGE;
         if !(shortest..=longest).contains(&step) {
             return Err(not_a_step(step));
         }
         let ahead = -self.clock.since(DoubleDouble::new(current));
-        if self.cut_from == Some(current) {
+        if let Some(from) = self.cut_from
+            && from == current
+        {
             return Err(self.asked_again(current));
         }
-        let deviation = if ahead.abs() <= SAME * current.abs() {
-            0.0
+        let same = ahead.abs() <= SAME * current.abs();
+        let deviation = if same {
+            None
         } else {
-            self.deviation(current, step, ahead)?
+            Some(self.deviation(current, step, ahead)?)
         };
         if let Some(stop) = stop_time {
-            self.check_end(current, step, deviation, stop)?;
+            self.check_end(current, step, deviation.unwrap_or(0.0), *stop)?;
         }
         Ok(deviation)
     }
@@ -285,8 +288,8 @@ impl<M: Model> Instance<M> {
         let Simulation::Run(run) = &mut self.simulation else {
             return Err(Fault::error("initialization has not ended".into()));
         };
-        let deviation = run.check_step(current, step, self.experiment.stop_time)?;
-        if deviation != 0.0 {
+        let deviation = run.check_step(current, step, &self.experiment.stop_time)?;
+        if let Some(deviation) = deviation {
             follow_clock(
                 run,
                 &mut self.scene,

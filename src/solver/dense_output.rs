@@ -111,10 +111,15 @@ impl Segment {
 
     /// Works out the powers of u, which [`Segment::position`] and
     /// [`Segment::rate`] need.
+    #[inline]
     pub fn expand(&mut self) {
-        if self.expanded {
-            return;
+        if !self.expanded {
+            self.expand_now();
         }
+    }
+
+    #[inline(never)]
+    fn expand_now(&mut self) {
         let even = product(&PAIRED_16.powers_from_even, &self.series.even);
         let odd = product(&PAIRED_16.powers_from_odd, &self.series.odd);
         for i in 0..PAIRS {

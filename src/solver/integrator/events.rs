@@ -38,7 +38,8 @@ impl<M: Method> Integrator<M> {
             } => ahead.min(at.since(target)),
             Mode::Periodic { orbit, direction } => {
                 let room = if *direction > 0.0 { ahead } else { offset };
-                room.min(orbit.time_to_turn(target, *direction))
+                let to_turn = orbit.time_to_turn(target, *direction);
+                if to_turn < room { to_turn } else { room }
             }
             Mode::AtRest => 0.0,
         };
@@ -54,10 +55,9 @@ impl<M: Method> Integrator<M> {
                 self.arrive(turn);
             }
         }
-        self.mode = Mode::Periodic {
-            orbit,
-            direction: next_direction,
-        };
+        if let Mode::Periodic { direction, .. } = &mut self.mode {
+            *direction = next_direction;
+        }
         self.arrive(now);
     }
 
