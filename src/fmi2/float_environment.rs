@@ -97,7 +97,8 @@ mod register {
     }
 
     #[inline(always)]
-    pub fn write([control, status]: &Words) {
+    pub fn write(&[control, status]: &Words) {
+        // Copies: of a reference the register would take the address.
         // SAFETY: the words were read from the registers, or are the default.
         unsafe {
             asm!("msr fpcr, {}", "msr fpsr, {}", in(reg) control, in(reg) status,
