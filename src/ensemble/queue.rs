@@ -55,9 +55,9 @@ pub struct Queue<'a, const POINTS: usize, E> {
     tolerance: f64,
     /// The largest correction of a position in a step, over the position.
     correction: f64,
-    /// The natural frequencies at the start, the highest first, and which motions these are: those with
-    /// the most steps come first, so that no lane is left with a long one at the end.
-    waiting: std::vec::IntoIter<(f64, usize)>,
+    /// The motions that no lane has taken yet. Those of the highest natural frequency at the start, which take
+    /// the most steps, come first, so that no lane is left with a long one at the end.
+    waiting: std::vec::IntoIter<usize>,
     arrivals: Vec<Result<Arrival, Failure>>,
 }
 
@@ -81,8 +81,9 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             let seen = motion.equation.seen_from(&start);
             seen.natural_frequency(motion.start)
         };
-        let mut waiting: Vec<_> = motions.iter().map(frequency).zip(0..).collect();
-        waiting.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        let frequencies: Vec<f64> = motions.iter().map(frequency).collect();
+        let mut waiting: Vec<usize> = (0..motions.len()).collect();
+        waiting.sort_by(|&one, &other| frequencies[other].total_cmp(&frequencies[one]));
         Queue {
             level,
             motions,
@@ -137,7 +138,7 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         packed: &mut LaneStates,
         index: usize,
     ) -> Option<Lane> {
-        while let Some((_, motion)) = self.waiting.next() {
+        while let Some(motion) = self.waiting.next() {
             let &InitialValueProblem {
                 ref equation,
                 start,

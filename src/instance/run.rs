@@ -129,9 +129,7 @@ impl<M: Model> Run<M> {
             return Err(not_a_step(step));
         }
         let ahead = -self.clock.since(DoubleDouble::new(current));
-        if let Some(from) = self.cut_from
-            && from == current
-        {
+        if self.cut_from == Some(current) {
             return Err(self.asked_again(current));
         }
         let same = ahead.abs() <= SAME * current.abs();

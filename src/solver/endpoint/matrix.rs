@@ -19,7 +19,8 @@ use crate::arithmetic::number::Number;
 type Matrix = [[f64; NODES]; NODES];
 
 /// Makes the matrices [A, B] to [W·A, B·W], where W = (1 − slope·A)⁻¹. The slope begins to act at one node after the
-/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0.
+/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0. Both loops
+/// stay loops, of whatever width registers are: a slope is seldom made.
 #[inline(always)]
 fn include_slope<S: Simd>(simd: S, slope: f64, matrices: &mut [Matrix; 2]) {
     for p in 0..black_box(NODES) {
