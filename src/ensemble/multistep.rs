@@ -228,36 +228,47 @@ impl LaneStates {
         let inverse = load(&self.inverse);
         let square = step * step;
         let begin = load(&self.position);
-        let miss: V = Falkner::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
+        let mut miss: V = Falkner::<POINTS>::miss(simd, &self.f[HISTORY - POINTS..]);
         // Those predicted, x and hx'.
         let mut position = begin - miss * fill(formula.miss_twice);
         let mut way = load(&self.rate) * step - miss * fill(formula.miss_once);
         let mut f = load(&self.f[HISTORY - 1]);
-        let mut range = [begin; 2];
-        let (mut worst, mut largest, mut miss) = (fill(0.0), fill(0.0), miss);
+        // Two steps share what they load. Nothing else is done here: registers are too few for it.
+        for i in (0..BLOCK).step_by(2) {
+            let mut sums = [[fill(0.0); 2]; 2];
+            for back in (0..POINTS).rev() {
+                let f = load(&self.f[HISTORY - 1 + i - back]);
+                // What depends on the last step comes last: a sum of all in turn would be waited for.
+                for (step, weight) in [(0, back), (1, back + 1)] {
+                    if (1..POINTS).contains(&weight) {
+                        let [twice, once] = sums[step];
+                        sums[step] = [
+                            f.mul_add(fill(formula.twice[weight]), twice),
+                            f.mul_add(fill(formula.once[weight]), once),
+                        ];
+                    }
+                }
+            }
+            for (i, [twice, once]) in (i..).zip(sums) {
+                position = f.mul_add(fill(formula.twice[0]), (position + way) + twice);
+                way = f.mul_add(fill(formula.once[0]), way + once);
+                packed.turn();
+                f = packed.acceleration(position, way, step, inverse);
+                self.f[HISTORY + i] = f.store();
+                self.positions[i] = position.store();
+                self.ways[i] = way.store();
+            }
+        }
+        let (mut range, mut largest) = ([begin; 2], fill(0.0));
         for i in 0..BLOCK {
-            // What depends on the last step comes last: a sum of all in turn would be waited for.
-            let oldest = load(&self.f[HISTORY + i - POINTS]);
-            let mut twice = oldest * fill(formula.twice[POINTS - 1]);
-            let mut once = oldest * fill(formula.once[POINTS - 1]);
-            for j in (1..POINTS - 1).rev() {
-                let f = load(&self.f[HISTORY - 1 + i - j]);
-                twice = f.mul_add(fill(formula.twice[j]), twice);
-                once = f.mul_add(fill(formula.once[j]), once);
-            }
-            position = f.mul_add(fill(formula.twice[0]), (position + way) + twice);
-            way = f.mul_add(fill(formula.once[0]), way + once);
-            packed.turn();
-            f = packed.acceleration(position, way, step, inverse);
-            largest = largest.max(f.abs());
+            let position = load(&self.positions[i]);
             range = [range[0].min(position), range[1].max(position)];
-            self.f[HISTORY + i] = f.store();
-            self.positions[i] = position.store();
-            self.ways[i] = way.store();
-            if (i + 1) % ESTIMATED == 0 {
-                miss = Falkner::<POINTS>::miss(simd, &self.f[HISTORY + 1 + i - POINTS..]);
-                worst = worst.max(miss.abs());
-            }
+            largest = largest.max(load(&self.f[HISTORY + i]).abs());
+        }
+        let mut worst = fill(0.0);
+        for end in (0..=BLOCK).step_by(ESTIMATED).skip(1) {
+            miss = Falkner::<POINTS>::miss(simd, &self.f[HISTORY + end - POINTS..]);
+            worst = worst.max(miss.abs());
         }
         let position = miss.mul_add(fill(formula.miss_twice), position);
         let rate = miss.mul_add(fill(formula.miss_once), way) * inverse;
