@@ -201,8 +201,7 @@ impl LocalEquation for LocalMotion<'_> {
 
     #[inline(always)]
     fn acceleration_and<N: Number>(&self, load: Load<N>, position: N, rate: N, addend: N) -> N {
-        let coefficients = self.coefficients.same(position);
-        let [numerator, inverse] = numerator_and_inverse(&coefficients, load, position, rate);
+        let [numerator, inverse] = self.numerator_and_inverse(load, position, rate);
         numerator.mul_add(inverse, addend)
     }
 
@@ -246,6 +245,17 @@ impl LocalEquation for LocalMotion<'_> {
 }
 
 impl LocalMotion<'_> {
+    /// λ'' as a numerator and the inverse of its denominator, c λ⁷ + 2λ.
+    #[inline(always)]
+    pub(super) fn numerator_and_inverse<N: Number>(
+        &self,
+        load: Load<N>,
+        stretch: N,
+        rate: N,
+    ) -> [N; 2] {
+        numerator_and_inverse(&self.coefficients.same(stretch), load, stretch, rate)
+    }
+
     #[inline(always)]
     fn stiffness_and_mass(&self, stretch: f64) -> [f64; 2] {
         stiffness_and_mass(&self.coefficients, self.drive.largest_voltage(), stretch)

@@ -1,5 +1,5 @@
-//! A nondimensional trajectory of either kind: of the paper's equation, where the actuator is described by it,
-//! or of a coupled system.
+//! A nondimensional trajectory of either kind: of the paper's equation, where that describes the actuator but for
+//! damping, or of a coupled system.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ use crate::solver::trajectory::{Failure, Progress, Trajectory};
 /// How the motion is followed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) enum SiTrajectory {
-    /// As the paper's equation.
+    /// As the paper's equation, with damping or without.
     Plain(Box<Trajectory>),
     /// As that of a real actuator.
     Coupled(Box<coupled::Trajectory>),
@@ -143,8 +143,12 @@ impl SiTrajectory {
     ) -> Result<Progress<coupled::Event>, Failure> {
         match self {
             SiTrajectory::Plain(trajectory) => {
-                let progress = trajectory.advance_beyond_step(&motion.plain(), clock, step)?;
-                Ok(match progress {
+                let progress = if motion.device.damping.is_none() {
+                    trajectory.advance_beyond_step(&motion.plain(), clock, step)
+                } else {
+                    trajectory.advance_beyond_step(&motion.damped(), clock, step)
+                };
+                Ok(match progress? {
                     Progress::Whole => Progress::Whole,
                     Progress::Stopped { limit, after } => Progress::Stopped {
                         limit: coupled::Event::Limit(limit),

@@ -3,6 +3,7 @@
 mod balance;
 #[path = "../clocked/mod.rs"]
 mod clocked;
+mod damped;
 mod periods;
 mod plain;
 mod published;

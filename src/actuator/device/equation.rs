@@ -14,7 +14,7 @@
 //! These follow from the energies and dissipations of [`super::energy`]; the balance is tested.
 
 use super::elasticity::{Elasticity, Locking, invariant};
-use super::parameters::{Branch, Damping, Device, Permittivity, Source};
+use super::parameters::{Branch, Device, Permittivity, Source};
 use crate::actuator::Drive;
 use crate::actuator::drive::LocalDrive;
 use crate::arithmetic::double_double::DoubleDouble;
@@ -284,8 +284,7 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
             force = force - lift(branch.modulus) * branch.stiffening(p.square / g) * pull;
         }
         let inertia = number(2.0).mul_add(inverse_sixth, lift(device.sheet.aspect));
-        let Damping { linear, viscosity } = device.damping;
-        let damping = (number(6.0) * lift(viscosity)).mul_add(p.inverse_square, lift(linear));
+        let damping = device.damping.scaled([number(1.0), p.inverse_square]);
         [force, inertia, damping]
     }
 

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::damped::DampedMotion;
 use super::elasticity::Elasticity;
 use super::equation::{Load, LocalDevice, Powers};
 use super::parameters::{Device, Source};
@@ -34,13 +35,13 @@ pub struct DeviceMotion {
 }
 
 impl DeviceMotion {
-    /// Whether the paper's equation describes the motion, and no energies are integrated.
+    /// Whether the paper's equation describes the motion, with damping or without, and no energies are integrated.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.device.is_plain() && !self.records_energy
     }
 
-    /// The motion by the paper's equation; of use where [`DeviceMotion::is_plain`].
+    /// The motion by the paper's equation without damping; of use where [`DeviceMotion::is_plain`].
     #[must_use]
     pub fn plain(&self) -> Motion {
         let mut drive = self.drive;
@@ -49,6 +50,15 @@ impl DeviceMotion {
         Motion {
             coefficients: self.device.folded(),
             drive,
+        }
+    }
+
+    /// The motion by the paper's equation with damping; of use where [`DeviceMotion::is_plain`].
+    #[must_use]
+    pub fn damped(&self) -> DampedMotion {
+        DampedMotion {
+            motion: self.plain(),
+            damping: self.device.damping,
         }
     }
 }

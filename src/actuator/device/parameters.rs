@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::elasticity::Elasticity;
 use crate::actuator::{Coefficients, Parameters};
-use crate::arithmetic::number::Parameter;
+use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 
 /// Maxwell branches that an actuator may have.
 pub const MOST_BRANCHES: usize = 3;
@@ -106,6 +106,10 @@ pub struct Breakdown<P = f64> {
     pub exponent: P,
 }
 
+/// The damping at λ = 1, over √(c + 2), from which it is strong: a damping ratio of 0.8. Up to a ratio of 1 the
+/// integrator of the paper's equation was the faster one on a step and on an alternating voltage.
+const STRONG_DAMPING: f64 = 4.0;
+
 impl Device {
     /// The actuator of the paper: the sheet alone, with an ideal voltage source.
     #[must_use]
@@ -131,13 +135,14 @@ impl Device {
         }
     }
 
-    /// Whether the paper's equation describes the motion. A load mass and a spring may be there: they are
-    /// folded into its coefficients ([`Device::folded`]) and the prestress ([`Spring::preload`]).
+    /// Whether the paper's equation describes the motion, with damping or without. A load mass and a spring may be
+    /// there: they are folded into its coefficients ([`Device::folded`]) and the prestress ([`Spring::preload`]).
+    /// Strong damping is left to the integrator of coupled systems, which solves stiff ones.
     #[must_use]
     pub fn is_plain(&self) -> bool {
         self.elasticity == Elasticity::NeoHookean
             && self.permittivity.is_constant()
-            && self.damping.is_none()
+            && self.damping.coefficient(1.0) <= STRONG_DAMPING * (self.sheet.aspect + 2.0).sqrt()
             && self.branches.iter().all(|branch| branch.modulus == 0.0)
             && self.port.source == Source::Voltage
             && self.port.resistance == 0.0
@@ -229,8 +234,21 @@ impl Damping {
     /// The damping force over the rate, at a stretch.
     #[must_use]
     pub fn coefficient(&self, stretch: f64) -> f64 {
+        self.scaled([1.0, 1.0 / (stretch * stretch)])
+    }
+}
+
+impl<P: Parameter> Damping<P> {
+    /// The damping force over the rate, (b̄ + 6η̄λ⁻²), times a factor; given are the factor and that times λ⁻².
+    #[must_use]
+    #[inline(always)]
+    pub fn scaled<N: Number>(&self, [factor, by_square]: [N; 2]) -> N
+    where
+        P: ParameterOf<N>,
+    {
         let Damping { linear, viscosity } = *self;
-        linear + 6.0 * viscosity / (stretch * stretch)
+        let viscous = factor.same(6.0) * viscosity.lift(factor);
+        viscous.mul_add(by_square, linear.lift(factor) * factor)
     }
 }
 
