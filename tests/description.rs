@@ -112,6 +112,20 @@ fn row<M: Model>(variable: &Variable<M>) -> String {
 
 /// Each member is a variable of the description with a causality of a port, once; the units of force and
 /// motion are those of a work.
+fn infinite_values_are_described<M: Model>() {
+    for variable in M::VARIABLES {
+        let said = variable.description.contains("+inf");
+        assert_eq!(variable.may_be_infinite, said, "{}", variable.name);
+    }
+}
+
+/// A host is handed +inf by no other variable.
+#[test]
+fn a_variable_that_may_be_infinite_says_so() {
+    infinite_values_are_described::<Nondimensional>();
+    infinite_values_are_described::<Si>();
+}
+
 #[test]
 fn terminals_name_variables_of_the_table() {
     assert!(description::terminals::xml::<Nondimensional>().is_none());

@@ -1,12 +1,13 @@
 //! Derivatives of inputs and outputs with respect to time, and directional
 //! derivatives.
 
+use super::beyond::cannot_be_worked_out;
 use super::phase::Phase;
 use super::{Fault, Instance, values};
 use crate::actuator::drive::{HIGHEST_DERIVATIVE, Polynomial};
 use crate::arithmetic::jet::HIGHEST_ORDER;
 use crate::model::variables::{Access, Causality, Derivatives, Kind, Variable};
-use crate::model::{Direction, Model};
+use crate::model::{Direction, Model, View};
 use crate::shortest::Shortest;
 
 impl<M: Model> Instance<M> {
@@ -62,7 +63,7 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     /// Error for a variable that is no real output or an order outside 1 to 5;
-    /// then nothing is stored.
+    /// then nothing is stored. Discard where a derivative leads beyond the largest number.
     pub fn output_derivatives(
         &self,
         references: &[u32],
@@ -80,16 +81,23 @@ impl<M: Model> Instance<M> {
             check_order(variable.name, order, HIGHEST_ORDER)?;
         }
         let highest = orders.iter().max().map_or(0, |&order| order as usize);
-        let motion = M::from_now_on(&self.view(), highest);
+        let view = self.view();
+        let motion = M::from_now_on(&view, highest);
+        let mut beyond = None;
         for (place, (&reference, &order)) in references.iter().zip(orders).enumerate() {
-            let Some(derivatives) = derivatives_of(&M::VARIABLES[reference as usize]) else {
+            let variable = &M::VARIABLES[reference as usize];
+            let Some(derivatives) = derivatives_of(variable) else {
                 continue;
             };
             let factorial: f64 = (1..=order).map(f64::from).product();
             let series = (derivatives.from_now_on)(&motion);
-            store(place, factorial * series.term[order as usize]);
+            let derivative = factorial * series.term[order as usize];
+            if !derivative.is_finite() {
+                beyond = beyond.or(Some(variable.name));
+            }
+            store(place, derivative);
         }
-        Ok(())
+        all_finite(&view, beyond)
     }
 
     /// The directional derivatives Σ ∂unknown/∂known · change of the `unknowns`, exact to rounding, each passed to
@@ -99,7 +107,7 @@ impl<M: Model> Instance<M> {
     /// # Errors
     /// Error for an unknown reference, an unknown without a derivative, a known
     /// that is neither input, parameter nor state, or a change that is not
-    /// finite; then nothing is stored.
+    /// finite; then nothing is stored. Discard where a derivative leads beyond the largest number.
     pub fn directional_derivative(
         &self,
         unknowns: &[u32],
@@ -117,13 +125,20 @@ impl<M: Model> Instance<M> {
                 )));
             }
         }
-        let sample = M::along(&self.view(), &self.direction(knowns, changes)?);
+        let view = self.view();
+        let sample = M::along(&view, &self.direction(knowns, changes)?);
+        let mut beyond = None;
         for (place, &unknown) in unknowns.iter().enumerate() {
-            if let Some(derivatives) = derivatives_of(&M::VARIABLES[unknown as usize]) {
-                store(place, (derivatives.along)(&sample).slope());
+            let variable = &M::VARIABLES[unknown as usize];
+            if let Some(derivatives) = derivatives_of(variable) {
+                let derivative = (derivatives.along)(&sample).slope();
+                if !derivative.is_finite() {
+                    beyond = beyond.or(Some(variable.name));
+                }
+                store(place, derivative);
             }
         }
-        Ok(())
+        all_finite(&view, beyond)
     }
 
     /// The direction of these changes: a scene and a state into which the setters of the table write them.
@@ -171,6 +186,17 @@ impl<M: Model> Instance<M> {
 pub(super) fn state_component<M: Model>(state: &mut M::State, reference: u32) -> Option<&mut f64> {
     let place = M::STATES.iter().position(|state| *state == reference)?;
     M::component(state, place)
+}
+
+/// Discards the answer where the derivative of a variable, of this name, is no finite number.
+fn all_finite<M: Model>(view: &View<M>, beyond: Option<&str>) -> Result<(), Fault> {
+    match beyond {
+        None => Ok(()),
+        Some(name) => Err(cannot_be_worked_out(
+            view,
+            &format!("a derivative of {name}"),
+        )),
+    }
 }
 
 fn derivatives_of<M: Model>(variable: &Variable<M>) -> Option<Derivatives<M>> {

@@ -3,6 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::beyond::cannot_be_worked_out;
 use super::phase::Phase;
 use super::{Fault, Instance, Message, Simulation, check_time};
 use crate::arithmetic::double_double::DoubleDouble;
@@ -250,14 +251,19 @@ impl<M: Model> Instance<M> {
     /// The event indicators of the model.
     ///
     /// # Errors
-    /// Error for another count than [`Model::INDICATOR_COUNT`].
+    /// Error for another count than [`Model::INDICATOR_COUNT`]; Discard where an indicator leads beyond the
+    /// largest number.
     pub fn event_indicators(&self, indicators: &mut [f64]) -> Result<(), Fault> {
         let count = indicators.len();
         if count != M::INDICATOR_COUNT {
             return Err(wrong_count("event indicators", count, M::INDICATOR_COUNT));
         }
-        M::indicators(&self.view(), indicators);
-        Ok(())
+        let view = self.view();
+        M::indicators(&view, indicators);
+        if indicators.iter().all(|indicator| indicator.is_finite()) {
+            return Ok(());
+        }
+        Err(cannot_be_worked_out(&view, "an event indicator"))
     }
 
     /// The typical sizes of the continuous states.

@@ -4,6 +4,7 @@
 //! Nothing here knows of pointers or of XML. Each call checks everything before
 //! it changes anything.
 
+mod beyond;
 mod derivatives;
 mod exchange;
 mod fault;

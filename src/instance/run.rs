@@ -8,7 +8,7 @@ use super::values::input_bit;
 use super::{Fault, Instance, Message, Severity, Simulation};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::variables::Access;
-use crate::model::{AtLimit, Collapse, Integration, Model};
+use crate::model::{AtLimit, Collapse, Integration, Model, Place, View};
 use crate::shortest::Shortest;
 use crate::solver::trajectory::{Failure, Progress};
 
@@ -243,26 +243,33 @@ impl<M: Model> Run<M> {
                     ))),
                 }
             }
-            Err(failure) => Err(self.fail(failure, current)),
+            Err(failure) => Err(self.fail(scene, failure, current)),
         }
     }
 
     /// Why the step ended early. After a step that needed too much work, the motion can go on.
     #[cold]
-    fn fail(&mut self, failure: Failure, current: f64) -> Fault {
+    fn fail(&mut self, scene: &M::Scene, failure: Failure, current: f64) -> Fault {
         let time = Shortest(self.clock.value());
         let place = self.motion.whereabouts();
+        let view = View::<M> {
+            scene,
+            place: Place::On(&self.motion),
+            time: &self.clock,
+            collapse: None,
+        };
+        let excess = M::excess(&view).map_or_else(String::new, |excess| format!("; {excess}"));
         let at = format!("the integration stopped at time {time} and {place}");
         match failure {
             Failure::SubstepTooShort { length, .. } => Fault::discard(format!(
-                "{at}: a substep of {} is too short to go on; the simulation should end here",
+                "{at}: a substep of {} is too short to go on; the simulation should end here{excess}",
                 Shortest(length)
             )),
             Failure::TooManySubsteps { most, .. } => {
                 self.cut_from = Some(current);
                 Fault::discard(format!(
                     "{at}: the step needs more than {most} substeps or iterations; use shorter \
-                     steps from there on"
+                     steps from there on{excess}"
                 ))
             }
         }

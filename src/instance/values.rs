@@ -1,5 +1,6 @@
 //! Getting and setting variables by their value references.
 
+use super::beyond::{means_none, one_cannot_be_worked_out};
 use super::derivatives::state_component;
 use super::phase::Phase;
 use super::{Fault, Instance, Simulation};
@@ -108,7 +109,7 @@ impl<M: Model> Instance<M> {
     ///
     /// # Errors
     /// Error for an unknown reference or another type; then nothing is stored.
-    /// Discard where a result is NaN: a host's integrator may try states far out or at 0.
+    /// Discard where a result leads beyond the largest number: a host's integrator may try states far out or at 0.
     pub fn get(
         &self,
         wanted: Type,
@@ -125,13 +126,15 @@ impl<M: Model> Instance<M> {
         let mut all_numbers = true;
         for (place, &reference) in references.iter().enumerate() {
             let value = typed::<M>(reference, wanted)?.value(&view);
-            all_numbers &= !value.is_nan();
+            if !value.is_finite() {
+                all_numbers &= means_none::<M>(references, place, value);
+            }
             store(place, value);
         }
         if all_numbers {
             return Ok(());
         }
-        Err(cannot_be_worked_out(&view, references))
+        Err(one_cannot_be_worked_out(&view, references))
     }
 
     /// Reads a state where it is stored as such. It compares integers and copies, without any floating-point
@@ -379,25 +382,6 @@ impl<M: Model> Instance<M> {
         }
         Ok(())
     }
-}
-
-/// Why one of these results is NaN: there is no motion at the state, or an intermediate result overflows.
-#[cold]
-fn cannot_be_worked_out<M: Model>(view: &View<M>, references: &[u32]) -> Fault {
-    let name = references
-        .iter()
-        .map(|&reference| &M::VARIABLES[reference as usize])
-        .find(|row| row.value(view).is_nan())
-        .map_or("a result", |row| row.name);
-    Fault::discard(match M::check_state(view) {
-        Err(why) => format!("{why}; try a shorter step"),
-        Ok(()) => format!(
-            "{name} cannot be worked out at {}: it leads beyond the largest number, {}; try a shorter \
-             step, or parameters nearer to their typical sizes",
-            view.state_in_words(),
-            Shortest(f64::MAX)
-        ),
-    })
 }
 
 /// Why a variable cannot be set, or not any more.

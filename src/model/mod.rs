@@ -160,6 +160,12 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// A message that names the value.
     fn check_state(view: &View<Self>) -> Result<(), String>;
 
+    /// The setting that leads results beyond the largest number, or the integration into steps that are too
+    /// short, where the model knows one: its value, the limit, and what to do.
+    fn excess(_view: &View<Self>) -> Option<String> {
+        None
+    }
+
     /// The present state.
     fn state(view: &View<Self>) -> Self::State;
 

@@ -275,7 +275,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
                 .map_or(f64::INFINITY, |t| t.voltage)
         }),
         UNDECLARED,
-    ),
+    )
+    .or_infinite(),
     Row::result(
         "lambda3_pull_in",
         "thickness stretch at the dynamic pull-in voltage; 0 where there is none",
@@ -294,7 +295,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         positive(),
         value(|view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage)),
         UNDECLARED,
-    ),
+    )
+    .or_infinite(),
     Row::result(
         "lambda3_pull_in_static",
         "thickness stretch at the static pull-in voltage; 0 where there is none",
@@ -310,7 +312,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         unlimited(1.0),
         value(|view| view.pull_in_margin()),
         UNDECLARED,
-    ),
+    )
+    .or_infinite(),
     Row::result(
         "pull_in_time",
         "time at which pulled_in became true; +inf, which JSON cannot hold, until then",
@@ -318,7 +321,8 @@ pub static VARIABLES: [Row; COUNT] = checked([
         unlimited(1.0),
         value(|view| view.collapse.map_or(f64::INFINITY, |c| c.time.value())),
         UNDECLARED,
-    ),
+    )
+    .or_infinite(),
     Row::parameter(
         "record_extremes",
         "whether the extremes of lambda and lambda3 are recorded",

@@ -3,6 +3,7 @@
 
 mod account;
 mod along;
+mod check;
 mod folded;
 mod motion;
 mod sample;
@@ -251,7 +252,17 @@ impl Model for Si {
             Some(state) => view.in_words(*state),
             None => view.state_in_words(),
         };
-        Err(format!("there is no motion at {state}"))
+        let excess = Si::excess(&view).map_or_else(String::new, |excess| format!(": {excess}"));
+        Err(format!("there is no motion at {state}{excess}"))
+    }
+
+    fn excess(view: &View<Si>) -> Option<String> {
+        let field = view.electric_field().abs();
+        let conducts = view.scene.device.conductivity > 0.0;
+        (conducts && view.scene.overflows_in(field)).then(|| {
+            view.scene
+                .conducts_too_much(field, "electric_field", "what drives it")
+        })
     }
 
     fn state(view: &View<Si>) -> SiState {

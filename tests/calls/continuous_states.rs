@@ -2,6 +2,7 @@
 
 use super::exchange::EXCHANGE;
 use super::*;
+use dielectric_elastomer_actuator::model::variables::Kind;
 
 #[test]
 fn bad_arguments_are_refused_and_change_nothing() {
@@ -88,15 +89,19 @@ fn results_that_are_no_numbers_are_discarded() {
             OK
         );
         let mut discarded = 0;
-        for variable in &VARIABLES {
+        let reals = VARIABLES
+            .iter()
+            .filter(|variable| matches!(variable.kind, Kind::Real { .. }));
+        for variable in reals {
             let (mut value, reference) = (0.0, reference(variable.name));
             let status = unsafe { fmi2GetReal(host.component, &reference, 1, &mut value) };
-            assert_eq!(
-                status == DISCARD,
-                value.is_nan(),
-                "{} at {state:?}",
-                variable.name
-            );
+            let means_none = value == f64::INFINITY && variable.description.contains("+inf");
+            let expected = if value.is_finite() || means_none {
+                OK
+            } else {
+                DISCARD
+            };
+            assert_eq!(status, expected, "{} at {state:?}", variable.name);
             discarded += usize::from(status == DISCARD);
         }
         assert_eq!(discarded > 0, place < 3, "{state:?}");

@@ -6,6 +6,7 @@ mod derivatives;
 mod exchange;
 mod host;
 mod motion;
+mod overflow;
 mod presets;
 mod refusals;
 mod scaling;

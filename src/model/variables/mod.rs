@@ -177,6 +177,8 @@ pub struct Variable<M: Model> {
     pub start: Option<f64>,
     /// The name of the state of which this is the derivative.
     pub derivative_of: Option<&'static str>,
+    /// Whether +inf is one of its values. It then means that there is none.
+    pub may_be_infinite: bool,
     /// How it is read and set.
     pub access: Access<M>,
 }
@@ -305,6 +307,13 @@ impl<M: Model> Variable<M> {
             Access::Input { get, .. } | Access::Result { get, .. } => get(view),
             Access::Setting { get, .. } => get(view.scene),
         }
+    }
+
+    /// Whether `value` can be handed to a host: a finite number, or +inf where that means something.
+    #[must_use]
+    #[inline]
+    pub fn has(&self, value: f64) -> bool {
+        value.is_finite() || value == f64::INFINITY && self.may_be_infinite
     }
 
     /// Whether the host prescribes it as a function of time.

@@ -29,7 +29,7 @@ pub const fn real(min: f64, max: f64, nominal: f64) -> Kind {
     Kind::Real { min, max, nominal }
 }
 
-/// A result that is not negative and has no largest value; it may be +inf.
+/// A result that is not negative and has no largest value.
 pub const fn positive() -> Kind {
     real(0.0, f64::INFINITY, 1.0)
 }
@@ -185,6 +185,7 @@ impl<M: Model> Variable<M> {
             conversion: None,
             start: None,
             derivative_of: None,
+            may_be_infinite: false,
             access,
         }
     }
@@ -244,6 +245,12 @@ impl<M: Model> Variable<M> {
     /// The row in another unit than 1.
     pub const fn in_unit(mut self, unit: &'static Unit) -> Variable<M> {
         self.unit = unit;
+        self
+    }
+
+    /// The row of a result that is +inf where there is none.
+    pub const fn or_infinite(mut self) -> Variable<M> {
+        self.may_be_infinite = true;
         self
     }
 

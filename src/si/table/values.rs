@@ -150,6 +150,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.threshold(PullIn::Static)),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "V_pull_in_dynamic",
@@ -159,6 +160,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.threshold(PullIn::Dynamic)),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "V_pull_in_from_rest",
@@ -168,6 +170,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.threshold(PullIn::FromRest)),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "V_pull_in_glassy_static",
@@ -177,6 +180,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.threshold(PullIn::GlassyStatic)),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "V_pull_in_glassy_dynamic",
@@ -186,6 +190,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.threshold(PullIn::GlassyDynamic)),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "lambda3_pull_in_static",
@@ -219,6 +224,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.pull_in_margin()),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT),
     Row::result(
         "breakdown_margin",
@@ -228,6 +234,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.breakdown_margin()),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::VOLT_PER_METRE),
     Row::result(
         "frequency",
@@ -246,6 +253,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.pull_in_time()),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::SECOND),
     Row::result(
         "breakdown_time",
@@ -255,6 +263,7 @@ pub(super) const VALUES: [Row; 34] = [
         value(|view| view.breakdown_time()),
         UNDECLARED,
     )
+    .or_infinite()
     .in_unit(&units::SECOND),
     EXTREMES[0],
     EXTREMES[1],
