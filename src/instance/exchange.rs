@@ -105,6 +105,9 @@ impl<M: Model> Instance<M> {
     /// Begins the handling of an event.
     pub fn enter_event_mode(&mut self) {
         self.phase = Phase::EventMode;
+        if let Simulation::Exchange(now) = &mut self.simulation {
+            now.account.enter_event(&self.scene, now.time, &now.state);
+        }
     }
 
     /// Ends the handling of events.

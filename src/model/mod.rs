@@ -243,7 +243,10 @@ pub trait Account<M: Model>:
     /// Records the host's step that has come to this state.
     fn include_step(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State);
 
-    /// Records this state alone: it, or an input, may have jumped.
+    /// An event begins, in this state and with the inputs that have led to it.
+    fn enter_event(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
+
+    /// The event has ended. Records this state alone: it, or an input, may have jumped.
     fn include(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State);
 
     /// Whether the numbers can be those of an account.

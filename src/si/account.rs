@@ -18,6 +18,8 @@ pub struct SiAccount {
     pub exchanged: [f64; MOST_INTEGRALS],
     /// When the true field was first found at breakdown, where breakdown does not end the motion.
     pub breakdown: Option<DoubleDouble>,
+    /// The charge on the electrodes in C at which the event began that is handled.
+    pub before: Option<f64>,
     time: DoubleDouble,
     state: SiState,
     inputs: Inputs,
@@ -52,6 +54,7 @@ impl Default for SiAccount {
         SiAccount {
             exchanged: [0.0; MOST_INTEGRALS],
             breakdown: None,
+            before: None,
             time: DoubleDouble::ZERO,
             state: SiState {
                 motion: State {
@@ -81,6 +84,7 @@ impl Account<Si> for SiAccount {
             account.inputs = Inputs::of(scene, time);
         }
         account.look_for_breakdown(scene, time, state);
+        account.before = charge_on_electrodes(scene, time, state);
         account
     }
 
@@ -91,11 +95,26 @@ impl Account<Si> for SiAccount {
         self.arrive(scene, time, state);
     }
 
-    fn include(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
+    fn enter_event(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
         if scene.record_energy {
             let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
             let before = self.inputs.total / basis.scales.source(scene.source());
             self.book_step(&basis, state, before);
+            self.inputs = Inputs::of(scene, time);
+        }
+        self.arrive(scene, time, state);
+        self.before = charge_on_electrodes(scene, time, state);
+    }
+
+    fn include(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
+        let before = self.before.take();
+        if scene.record_energy {
+            if let Some(charge) = before {
+                let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
+                let capacitance = basis.capacitance(state);
+                let before = scene.source_before(&basis.scales, charge, capacitance);
+                self.book_step(&basis, state, before);
+            }
             self.inputs = Inputs::of(scene, time);
         }
         self.arrive(scene, time, state);
@@ -116,8 +135,25 @@ impl Account<Si> for SiAccount {
         let mut numbers = numbers.iter().chain(&dashpots).chain(&self.exchanged);
         numbers.all(|number| number.is_finite())
             && self.time.is_finite()
+            && self.before.is_none_or(f64::is_finite)
             && self.breakdown.is_none_or(|time| time.is_finite())
     }
+}
+
+/// What can be read in a state.
+fn view_of<'a>(scene: &'a SiScene, time: &'a DoubleDouble, state: &SiState) -> View<'a, Si> {
+    View {
+        scene,
+        place: Place::of_state(*time, *state),
+        time,
+        collapse: None,
+    }
+}
+
+/// The charge on the electrodes in C, where the state is not too far out for one.
+fn charge_on_electrodes(scene: &SiScene, time: DoubleDouble, state: &SiState) -> Option<f64> {
+    let charge = view_of(scene, &time, state).charge();
+    charge.is_finite().then_some(charge)
 }
 
 impl SiAccount {
@@ -131,13 +167,7 @@ impl SiAccount {
         if !awaited || scene.at_breakdown() != OnBreakdown::Flag {
             return;
         }
-        let view = View::<Si> {
-            scene,
-            place: Place::of_state(time, *state),
-            time: &time,
-            collapse: None,
-        };
-        if view.breakdown_margin_part() <= super::REACHED {
+        if view_of(scene, &time, state).breakdown_margin_part() <= super::REACHED {
             self.breakdown = Some(time);
         }
     }

@@ -269,12 +269,12 @@ impl Model for Si {
         view.state()
     }
 
-    /// Where the charge becomes a state, it is the charge on the electrodes.
+    /// Where the charge becomes a state, it is the charge on the electrodes before the changes of this instant.
     fn state_tuned_to(view: &View<Si>, scene: &SiScene) -> SiState {
         let [was, is] = [view.scene, scene].map(|scene| scene.folded().device.has_charge_state());
         let mut state = view.state();
         if is && !was {
-            state.charge = view.charge();
+            state.charge = view.charge_before();
         }
         state
     }

@@ -106,8 +106,8 @@ impl SiMotion {
         state
     }
 
-    /// The charge on the electrodes in C.
-    fn charge_on_electrodes(&self, time: &DoubleDouble) -> f64 {
+    /// The charge on the electrodes in C, before the changes since the last advance.
+    pub(super) fn charge_on_electrodes(&self, time: &DoubleDouble) -> f64 {
         let charge = self.at_present(time, |local, stage| {
             let load = local.load(0.0);
             local.membrane_voltage(&load, stage) * local.capacitance(local.stretch(stage.position))

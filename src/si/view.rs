@@ -86,6 +86,14 @@ impl View<'_, Si> {
         }
     }
 
+    /// The charge on the electrodes in C, before the changes of this instant.
+    pub(super) fn charge_before(&self) -> f64 {
+        match self.place {
+            Place::On(motion) => motion.charge_on_electrodes(self.time),
+            Place::At { account, .. } => account.before.unwrap_or_else(|| self.charge()),
+        }
+    }
+
     /// Whether the equation is defined at the present state.
     pub(super) fn is_admitted(&self) -> bool {
         let (basis, stage) = self.basis();

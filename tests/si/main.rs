@@ -5,6 +5,8 @@ mod dependencies;
 mod derivatives;
 mod exchange;
 mod host;
+mod instant;
+mod integrator;
 mod motion;
 mod overflow;
 mod presets;

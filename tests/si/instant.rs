@@ -1,0 +1,145 @@
+//! Several changes at one instant: what follows depends neither on their order nor on the kind of FMU.
+
+use crate::host::Host;
+use crate::integrator::Integrator;
+
+type Change = (&'static str, f64);
+
+/// Lengths of the host's steps before an instant and after it.
+const STEP: f64 = 5e-9;
+const STEPS: usize = 60;
+
+/// Both kinds of FMU, with these values. The second integrates with the classical Runge–Kutta method.
+struct Pair {
+    ours: Host,
+    theirs: Integrator,
+}
+
+impl Pair {
+    fn begun(values: &[Change]) -> Pair {
+        let mut all = vec![("record_energy", 1.0), ("eta", 0.01)];
+        all.extend(values);
+        Pair {
+            ours: Host::begun(&all),
+            theirs: Integrator::begun(&all),
+        }
+    }
+
+    fn advance(&mut self) {
+        self.ours.step(STEPS as f64 * STEP);
+        for _ in 0..STEPS {
+            self.theirs.step(STEP);
+        }
+    }
+
+    /// Makes the changes at the present instant, an event of the second. Each kind of FMU is read in between.
+    fn change(&mut self, changes: &[Change]) {
+        self.theirs.host.instance.enter_event_mode();
+        for (name, value) in changes {
+            for host in [&mut self.ours, &mut self.theirs.host] {
+                host.set(name, *value).expect(name);
+                assert!(host.get("charge").is_finite());
+            }
+        }
+        self.agree("charge", 1e-11);
+        self.theirs.handle_events();
+    }
+
+    fn agree(&self, name: &str, size: f64) -> f64 {
+        let [a, b] = [&self.ours, &self.theirs.host].map(|host| host.get(name));
+        assert!((a - b).abs() < 1e-7 * size, "{name}: {a} {b}");
+        a
+    }
+
+    fn agree_in_everything(&self) {
+        for (name, size) in [
+            ("lambda", 1.0),
+            ("charge", 1e-11),
+            ("supply_current", 1e-5),
+            ("lost_resistance", 1e-9),
+            ("supplied_electrical", 1e-9),
+        ] {
+            self.agree(name, size);
+        }
+    }
+}
+
+/// All orders of these changes.
+fn orders(changes: &[Change]) -> Vec<Vec<Change>> {
+    if changes.is_empty() {
+        return vec![Vec::new()];
+    }
+    let mut all = Vec::new();
+    for k in 0..changes.len() {
+        let mut rest = changes.to_vec();
+        let first = rest.remove(k);
+        for mut order in orders(&rest) {
+            order.insert(0, first);
+            all.push(order);
+        }
+    }
+    all
+}
+
+/// The charge that becomes a state is the one that was on the electrodes before the instant: no time has passed in
+/// which the new source could have brought another.
+#[test]
+fn a_resistance_switched_on_finds_the_charge_of_before() {
+    let changes = [("voltage", 300.0), ("R_s", 1e7), ("V_ac", 50.0)];
+    for order in orders(&changes) {
+        let mut pair = Pair::begun(&[("f_ac", 3e5)]);
+        pair.advance();
+        let before = pair.agree("charge", 1e-11);
+        pair.change(&order);
+        let after = pair.agree("charge_state", 1e-11);
+        assert!(
+            (after / before - 1.0).abs() < 1e-7,
+            "{order:?}: {before} {after}"
+        );
+        pair.agree_in_everything();
+        pair.advance();
+        pair.agree_in_everything();
+    }
+}
+
+/// At the start time too.
+#[test]
+fn at_the_start_it_finds_the_charge_of_the_start() {
+    for order in orders(&[("voltage", 300.0), ("R_s", 1e7)]) {
+        let mut pair = Pair::begun(&[]);
+        let before = pair.agree("charge", 1e-11);
+        pair.change(&order);
+        let after = pair.agree("charge_state", 1e-11);
+        assert!(
+            (after / before - 1.0).abs() < 1e-12,
+            "{order:?}: {before} {after}"
+        );
+        pair.advance();
+        pair.agree_in_everything();
+    }
+}
+
+/// A resistance that is switched off and on again at one instant changes nothing, whatever is set in between.
+#[test]
+fn a_resistance_switched_off_for_no_time_keeps_the_charge() {
+    let mut pair = Pair::begun(&[("R_s", 1e7)]);
+    pair.advance();
+    let before = pair.agree("charge", 1e-11);
+    pair.change(&[("R_s", 0.0), ("voltage", 200.0), ("R_s", 2e7)]);
+    let after = pair.agree("charge_state", 1e-11);
+    assert!((after / before - 1.0).abs() < 1e-7, "{before} {after}");
+    pair.advance();
+    pair.agree_in_everything();
+}
+
+/// An ideal source in the place of a resistance meets the charge that is there, and exchanges the energy of a jump.
+#[test]
+fn a_resistance_switched_off_exchanges_the_energy_of_a_jump() {
+    for order in orders(&[("voltage", 500.0), ("R_s", 0.0)]) {
+        let mut pair = Pair::begun(&[("R_s", 1e7)]);
+        pair.advance();
+        pair.change(&order);
+        pair.advance();
+        pair.agree_in_everything();
+    }
+}
