@@ -7,6 +7,7 @@ use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;
+use nalgebra::{Matrix2, Vector2};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
@@ -118,16 +119,54 @@ fn neighbours_do_not_change_a_bit() {
     }
 }
 
-/// Times of a motion at which its amplification of an error at the start is looked at.
-const SAMPLES: u32 = 16;
+/// Times of a motion between which its amplification is looked at.
+const TIMES: u32 = 16;
 
 /// Amplification beyond which a motion is chaotic or escapes.
 const MOST_AMPLIFIED: f64 = 1e4;
 
-/// Motions under a voltage near the one at which they escape, of actuators without surface elasticity: at
-/// most ten tolerances times K, by which the exact motion amplifies an error at its start.
+/// The motion with hardly any error.
+fn exact(scene: &Scene, end: f64) -> Outcome {
+    follow_one(scene, end, 1e-14).expect("followed")
+}
+
+/// By how much the exact motion amplifies an error, from any time to any later one. Rates count in units of 1/`scale`.
+///
+/// What becomes of an error at the start does not tell. In the scene of c = 14.6 here errors of the start grow 8 times.
+/// The motion contracts and expands again on the way: errors that a step makes in between grow 80 times. Judged
+/// by the start alone, the test would fail or not by how large the error of that step happens to be.
+fn amplification(scene: &Scene, end: f64, scale: f64) -> f64 {
+    const NUDGE: f64 = 1e-8;
+    let state = |start: [f64; 2], time: f64| {
+        let mut scene = *scene;
+        scene.start.position += start[0];
+        scene.start.rate += start[1] / scale;
+        let state = exact(&scene, time).state;
+        Vector2::new(state.position, scale * state.rate)
+    };
+    // What errors of position and rate at the start have become at each time.
+    let mut grown = vec![Matrix2::identity()];
+    for k in 1..=TIMES {
+        let time = end * f64::from(k) / f64::from(TIMES);
+        let undisturbed = state([0.0; 2], time);
+        let errors = [[NUDGE, 0.0], [0.0, NUDGE]].map(|start| state(start, time) - undisturbed);
+        grown.push(Matrix2::from_columns(&errors) / NUDGE);
+    }
+    let mut most = 1.0_f64;
+    for (k, earlier) in grown.iter().enumerate() {
+        let back = earlier.try_inverse().expect("a motion can be reversed");
+        for later in &grown[k + 1..] {
+            most = most.max((later * back).amax());
+        }
+    }
+    most
+}
+
+/// Motions under a voltage near the one at which they escape, of actuators without surface elasticity: at most two
+/// tolerances times the amplification of an error on the way. At 68 tolerances from 1e-4 to 1e-12, and all scenes, the
+/// largest error was one.
 #[test]
-fn near_escape_errors_are_ten_tolerances_times_the_amplification() {
+fn near_escape_errors_are_two_tolerances_times_the_amplification() {
     let mut runner = TestRunner::deterministic();
     let mut draw = |range: std::ops::Range<f64>| {
         let tree = range.new_tree(&mut runner).expect("a number");
@@ -143,42 +182,23 @@ fn near_escape_errors_are_ten_tolerances_times_the_amplification() {
         scene.drive.prestress.set_value(draw(0.0..0.02));
         scene.drive.voltage.set_value(draw(0.24..0.28));
         let end = 200.0 * scale;
-        let exact = |scene: &Scene, end: f64| follow_one(scene, end, 1e-14).expect("followed");
         let one = exact(&scene, end);
         if one.collapse.is_some() {
             continue;
         }
-        let error = |one: &Outcome, other: &Outcome| {
-            let rate = scale * (one.state.rate - other.state.rate).abs();
-            let mut one = *one;
-            one.state.rate = other.state.rate;
-            difference(&one, other).max(rate)
-        };
-        let others = [[1e-8, 0.0], [0.0, 1e-8 / scale]].map(|[position, rate]| {
-            let mut other = scene;
-            other.start.position += position;
-            other.start.rate += rate;
-            other
-        });
-        let mut amplification = 1.0_f64;
-        for sample in 1..=SAMPLES {
-            let time = end * f64::from(sample) / f64::from(SAMPLES);
-            let one = exact(&scene, time);
-            for other in &others {
-                let grown = error(&one, &exact(other, time)) / 1e-8;
-                amplification = amplification.max(grown);
-            }
-        }
+        let amplification = amplification(&scene, end, scale);
         if amplification > MOST_AMPLIFIED {
             continue;
         }
         compared += 1;
         for tolerance in [1e-4, 1e-6, 1e-9, 1e-12] {
-            let many = follow(&[scene], end, tolerance)[0].expect("followed");
-            let error = error(&one, &many) / amplification;
+            let mut many = follow(&[scene], end, tolerance)[0].expect("followed");
+            let rate = scale * (one.state.rate - many.state.rate).abs();
+            many.state.rate = one.state.rate;
+            let error = difference(&one, &many).max(rate) / amplification;
             // Rounding of both.
             assert!(
-                error <= 10.0 * tolerance + 1e-13,
+                error <= 2.0 * tolerance + 1e-13,
                 "{scene:?} {tolerance}: {error}"
             );
         }
