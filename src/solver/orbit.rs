@@ -95,9 +95,16 @@ impl Orbit {
     /// A time less as many periods as it seems to hold by the high part of the period.
     #[inline]
     fn less_whole_periods(&self, time: f64) -> DoubleDouble {
-        let whole = (time / self.period.high).trunc();
+        let period = self.period.high;
+        let quotient = time / period;
         // The remainder of two f64 is exact.
-        DoubleDouble::new(time % self.period.high).plus(-(whole * self.period.low))
+        let (whole, rest) = if (1.0..MANY).contains(&quotient) {
+            let whole = whole_part(quotient);
+            (whole, remainder_of_few(time, whole, period))
+        } else {
+            (quotient.trunc(), time % period)
+        };
+        DoubleDouble::new(rest).plus(-(whole * self.period.low))
     }
 
     /// Where between the turning points, and in which direction, the motion is
@@ -120,6 +127,35 @@ impl Orbit {
         }
         (now, direction)
     }
+}
+
+/// Fewer periods than this in a time are counted without the C library, whose `trunc` and `fmod` take 100
+/// instructions: a count of 26 bits times half of the digits of a period is exact.
+const MANY: f64 = (1_u64 << 26) as f64;
+
+/// The whole part of a quotient from 1 to [`MANY`]. Processors without SSE4.1 have no instruction for it.
+#[inline]
+fn whole_part(quotient: f64) -> f64 {
+    // From here on neighbouring numbers differ by 1, so that adding it rounds to a whole number.
+    const WHOLE: f64 = (1_u64 << 52) as f64;
+    let rounded = (quotient + WHOLE) - WHOLE;
+    if rounded > quotient {
+        rounded - 1.0
+    } else {
+        rounded
+    }
+}
+
+/// `time % period`, to the bit, where the rounded quotient of both has this whole part, less than [`MANY`].
+#[inline]
+fn remainder_of_few(time: f64, whole: f64, period: f64) -> f64 {
+    const LOWER_DIGITS: u64 = (1 << 27) - 1;
+    let upper = f64::from_bits(period.to_bits() & !LOWER_DIGITS);
+    // Both products and both differences are exact: multiples of the last digit of the period, below 2^53 of them,
+    // or of twice that digit where the time is longer than two periods.
+    let rest = (time - whole * upper) - whole * (period - upper);
+    // The quotient was rounded up to a whole number.
+    if rest < 0.0 { rest + period } else { rest }
 }
 
 #[cfg(test)]
@@ -160,5 +196,44 @@ mod tests {
                 assert!(inside && along.abs() == 1.0, "step {step:e}: {now:?}");
             }
         }
+    }
+
+    /// Against `fmod` and `trunc`, to the bit: of random times, of whole multiples of the period and their
+    /// neighbours, and from a single period to more than there are digits.
+    #[test]
+    fn whole_periods_are_taken_off_exactly() {
+        let mut seed = 1_u64;
+        let mut random = || {
+            seed ^= seed << 13;
+            seed ^= seed >> 7;
+            seed ^= seed << 17;
+            seed
+        };
+        let mut few = 0;
+        for _ in 0..400_000 {
+            let digits = random() >> 12;
+            let exponent = 1023 - 100 + random() % 200;
+            let high = f64::from_bits(digits | exponent << 52);
+            let low = high * f64::EPSILON * ((random() % 1000) as f64 / 2001.0 - 0.25);
+            let turn = DoubleDouble { high, low }.scale_exactly(0.5);
+            let orbit = Orbit::between(DoubleDouble::ZERO, turn);
+            let count = (random() >> (random() % 64)) as f64;
+            let time = match random() % 3 {
+                0 => count * high,
+                1 => (count * high).next_down(),
+                _ => (count + (random() >> 11) as f64 / (1_u64 << 53) as f64) * high,
+            };
+            let period = orbit.period.high;
+            let whole = (time / period).trunc();
+            let exact = DoubleDouble::new(time % period).plus(-(whole * orbit.period.low));
+            let found = orbit.less_whole_periods(time);
+            assert_eq!(
+                [found.high.to_bits(), found.low.to_bits()],
+                [exact.high.to_bits(), exact.low.to_bits()],
+                "{time:e} of {period:e}"
+            );
+            few += u32::from(whole < MANY);
+        }
+        assert!((100_000..300_000).contains(&few), "{few}");
     }
 }
