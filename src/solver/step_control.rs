@@ -50,17 +50,6 @@ pub struct StepControl {
     pub tolerance: f64,
 }
 
-/// A step that is short enough.
-#[derive(Clone, Copy, Debug)]
-pub struct Accepted<T> {
-    /// The step.
-    pub step: T,
-    /// Its length.
-    pub length: f64,
-    /// The next one may be longer or shorter by this factor.
-    pub factor: f64,
-}
-
 /// A step shorter than this part of what it was to be cannot go on.
 pub const SHORTEST: f64 = 1e-12;
 
@@ -80,31 +69,20 @@ pub fn goes_on_from(half: f64, length: f64) -> bool {
 /// the last one allows, every second attempt is refused at a tolerance of 1e-6, every seventh at 1e-12.
 const MOST_GROWTH: f64 = 1.05;
 
-/// How fast steps may grow.
-#[derive(Clone, Copy, Debug)]
-pub struct Growth {
-    /// The length of the step before; nothing where there is none, and the next step may be as long as it can.
-    pub before: Option<f64>,
-    /// The power of the ratio of a step's length to that of the one before, by which the next one may be longer again.
-    pub acceleration: i32,
-}
-
-impl Growth {
-    /// By which factor the step after one of this length may be longer, at most: not at all where that had to be
-    /// shortened.
-    #[inline(always)]
-    fn most(&self, length: f64, shortened: bool) -> f64 {
-        match self.before {
-            _ if shortened => 1.0,
-            Some(before) => MOST_GROWTH * (length / before).max(1.0).powi(self.acceleration),
-            None => f64::INFINITY,
-        }
+/// By which factor the step after one of this `length` may be longer, at most: not at all where this one was to be
+/// `longest` and had to be shortened, as far as it can where none was `before`. The longer this one is than the one
+/// before, whose length is given, the longer the next one may be; by the power `acceleration` of their ratio.
+#[inline(always)]
+pub fn most_growth(length: f64, longest: f64, before: Option<f64>, acceleration: i32) -> f64 {
+    match before {
+        _ if length < longest => 1.0,
+        Some(before) => MOST_GROWTH * (length / before).max(1.0).powi(acceleration),
+        None => f64::INFINITY,
     }
 }
 
-/// Attempts steps of this length and shorter ones, until one is accepted. An attempt returns the
-/// step and by which factor the next one may be longer, or by which factor to shorten this one. Steps grow no
-/// faster than `growth` allows.
+/// Attempts a step of the `longest` length and shorter ones, until one is accepted. An attempt returns by which factor
+/// to shorten a step that is refused. It may take a shorter step than it is asked for.
 ///
 /// # Errors
 /// The length that is no longer than `shortest`, or NaN.
@@ -112,22 +90,15 @@ impl Growth {
 pub fn first_accepted<T>(
     longest: f64,
     shortest: f64,
-    growth: Growth,
-    mut attempt: impl FnMut(f64) -> Result<(T, f64), f64>,
-) -> Result<Accepted<T>, f64> {
+    mut attempt: impl FnMut(&mut f64) -> Result<T, f64>,
+) -> Result<T, f64> {
     let mut length = longest;
     loop {
         if length.is_nan() || length <= shortest {
             return Err(length);
         }
-        match attempt(length) {
-            Ok((step, factor)) => {
-                return Ok(Accepted {
-                    step,
-                    length,
-                    factor: factor.min(growth.most(length, length < longest)),
-                });
-            }
+        match attempt(&mut length) {
+            Ok(step) => return Ok(step),
             Err(factor) => length *= factor,
         }
     }
@@ -250,47 +221,39 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_error_above_the_tolerance_is_rejected_and_shortens() {
+    fn an_error_above_the_tolerance_is_rejected_and_slow_convergence_shortens() {
         let control = StepControl::new(1e-9);
         assert!(matches!(control.judge(1e-3, 0.1), Err(f) if f < 0.6));
         assert!(matches!(control.judge(1e-12, 0.01), Ok(f) if f > 1.0));
         assert!(matches!(control.judge(0.99e-9, 0.01), Ok(f) if f < 1.0));
-    }
-
-    /// The factor that is left to the step after the first one that is no longer than 1, of a `longest` one on.
-    fn factor_after(longest: f64, growth: Growth) -> f64 {
-        let attempt = |length: f64| {
-            if length > 1.0 {
-                Err(HALVED)
-            } else {
-                Ok(((), 3.0))
-            }
-        };
-        first_accepted(longest, 1e-3, growth, attempt).map_or(f64::NAN, |accepted| accepted.factor)
+        assert!(matches!(control.judge(0.0, 0.7), Ok(f) if f < 1.0));
     }
 
     #[test]
     fn steps_grow_faster_the_longer_they_have_grown() {
-        let after = |before: f64, acceleration| Growth {
-            before: Some(before),
-            acceleration,
-        };
-        assert_eq!(factor_after(1.0, after(1.0, 1)), MOST_GROWTH);
-        assert_eq!(factor_after(1.0, after(2.0, 1)), MOST_GROWTH);
-        assert_eq!(factor_after(1.0, after(0.8, 1)), MOST_GROWTH * 1.25);
-        assert_eq!(factor_after(1.0, after(0.8, 2)), MOST_GROWTH * 1.5625);
-        assert_eq!(factor_after(1.0, after(0.1, 1)), 3.0);
-        let first = Growth {
-            before: None,
-            acceleration: 1,
-        };
-        assert_eq!(factor_after(1.0, first), 3.0);
-        assert_eq!(factor_after(1.5, first), 1.0);
+        let after = |before: f64, acceleration| most_growth(1.0, 1.0, Some(before), acceleration);
+        assert_eq!(after(1.0, 1), MOST_GROWTH);
+        assert_eq!(after(2.0, 1), MOST_GROWTH);
+        assert_eq!(after(0.8, 1), MOST_GROWTH * 1.25);
+        assert_eq!(after(0.8, 2), MOST_GROWTH * 1.5625);
+        assert_eq!(most_growth(1.0, 1.0, None, 1), f64::INFINITY);
+        assert_eq!(most_growth(1.0, 1.5, None, 1), 1.0);
     }
 
     #[test]
-    fn slow_convergence_shortens_an_accurate_substep() {
-        let control = StepControl::new(1e-9);
-        assert!(matches!(control.judge(0.0, 0.7), Ok(f) if f < 1.0));
+    fn a_step_is_shortened_until_it_is_accepted_or_too_short() {
+        let up_to = |most: f64| {
+            first_accepted(1.6, 0.1, |length| {
+                *length = length.min(1.5);
+                if *length > most {
+                    Err(HALVED)
+                } else {
+                    Ok(*length)
+                }
+            })
+        };
+        assert_eq!(up_to(1.5), Ok(1.5));
+        assert_eq!(up_to(0.4), Ok(0.375));
+        assert_eq!(up_to(0.09), Err(0.09375));
     }
 }

@@ -12,7 +12,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::iteration::{Diverged, IterationTolerance, MOST_ITERATIONS};
-use super::step_control::{HALVED, SHORTEST, StepControl, accept};
+use super::step_control::{HALVED, SHORTEST, accept, first_accepted};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
@@ -100,6 +100,12 @@ pub struct EndpointSteps {
     plan: Option<Box<Plan>>,
 }
 
+/// The longest step under this load, half of what 16 nodes can do: a period.
+#[inline(always)]
+fn longest<L: LocalEquation>(local: &L) -> f64 {
+    0.5 * local.longest_substep()
+}
+
 impl EndpointSteps {
     /// No step yet.
     pub fn none() -> EndpointSteps {
@@ -159,59 +165,58 @@ impl EndpointSteps {
 
     /// Goes the way as far as it can.
     #[inline(never)]
-    pub fn go<E: Equation>(
-        &mut self,
-        level: Level,
-        equation: &E,
-        control: StepControl,
-        way: &mut Way,
-    ) -> End {
-        dispatch!(level, simd => self.go_with(simd, equation, control, way))
+    pub fn go<E: Equation>(&mut self, level: Level, equation: &E, way: &mut Way) -> End {
+        dispatch!(level, simd => self.go_with(simd, equation, way))
     }
 
     #[inline(always)]
-    fn go_with<S: Simd, E: Equation>(
-        &mut self,
-        simd: S,
-        equation: &E,
-        control: StepControl,
-        way: &mut Way,
-    ) -> End {
+    fn go_with<S: Simd, E: Equation>(&mut self, simd: S, equation: &E, way: &mut Way) -> End {
         loop {
-            if let Some(end) = self.equal_steps(simd, equation, control, way) {
-                return end;
+            let mut local = equation.at(&way.time());
+            let time_scale = 1.0 / local.natural_frequency(way.state);
+            let first = || length::first(time_scale, way.control);
+            let wanted = *self.length.get_or_insert_with(first);
+            if longest(&local) < FAST * time_scale {
+                return End::Blocked;
+            }
+            let shortest = SHORTEST * way.rest().min(time_scale);
+            let steps = first_accepted(
+                wanted,
+                shortest,
+                #[inline(always)]
+                |length| self.equal_steps(simd, equation, way, &mut local, time_scale, length),
+            );
+            match steps {
+                Ok(None) => {}
+                Ok(Some(end)) => return end,
+                Err(_) => return End::Blocked,
             }
         }
     }
 
-    /// Takes equal steps toward the target, until their length should change.
+    /// Takes equal steps toward the target, no longer than `length`, until their length should change.
+    ///
+    /// # Errors
+    /// By which factor to shorten them, where the first one is refused.
     #[inline(always)]
-    fn equal_steps<S: Simd, E: Equation>(
+    fn equal_steps<'a, S: Simd, E: Equation>(
         &mut self,
         simd: S,
-        equation: &E,
-        control: StepControl,
+        equation: &'a E,
         way: &mut Way,
-    ) -> Option<End> {
-        let mut local = equation.at(&way.time());
-        let time_scale = 1.0 / local.natural_frequency(way.state);
-        let rest = way.target.since(way.now);
-        let wanted = *self
-            .length
-            .get_or_insert_with(|| length::first(time_scale, control));
-        // Half of what 16 nodes can do: a period of the load.
-        let longest = 0.5 * local.longest_substep();
-        let free = wanted.min(longest);
+        local: &mut E::Local<'a>,
+        time_scale: f64,
+        length: &mut f64,
+    ) -> Result<Option<End>, f64> {
+        let (wanted, rest) = (*length, way.rest());
+        let free = wanted.min(longest(local));
         let count = (rest / free - 1e-9).ceil().max(1.0);
-        let mut length = rest / count;
+        *length = rest / count;
         // The host's times are rounded: steps that only differ by that share a plan.
-        if (rest - 2.0 * self.half * count).abs() < SAME * length {
-            length = 2.0 * self.half;
+        if (rest - 2.0 * self.half * count).abs() < SAME * *length {
+            *length = 2.0 * self.half;
         }
-        let shortest = SHORTEST * rest.min(time_scale);
-        if length.is_nan() || length <= shortest || longest < FAST * time_scale {
-            return Some(End::Blocked);
-        }
+        let length = *length;
         let half = 0.5 * length;
         let square = half * half;
         let [frequency, angle] = local.harmonic().unwrap_or_default();
@@ -226,7 +231,7 @@ impl EndpointSteps {
         let product = if square < SLOPE_OFF * time_scale * time_scale {
             0.0
         } else {
-            self.product(simd, &local, phase[0], way.state, half, count)
+            self.product(simd, local, phase[0], way.state, half, count)
         };
         // Made anew after a state was restored.
         let plan = self.plan.get_or_insert_default();
@@ -255,7 +260,7 @@ impl EndpointSteps {
         };
         self.restarted = false;
         // Of the rate as of the position, in the motion's own units.
-        let end_tolerance = (half / time_scale).min(1.0) * control.end_tolerance();
+        let end_tolerance = (half / time_scale).min(1.0) * way.control.end_tolerance();
         let mut state = way.state;
         let mut left = count;
         // Steps since the load was taken.
@@ -263,7 +268,7 @@ impl EndpointSteps {
         let mut last = None;
         let end = loop {
             if way.budget == 0 {
-                break Some(End::TooMany);
+                break Ok(Some(End::TooMany));
             }
             way.budget -= 1;
             let scale = state.position.abs();
@@ -280,7 +285,7 @@ impl EndpointSteps {
             let solved = solve(
                 simd,
                 plan,
-                &local,
+                local,
                 loads,
                 state,
                 guess,
@@ -309,7 +314,7 @@ impl EndpointSteps {
                     self.length = Some(factor * length);
                     self.seen = Seen::NOTHING;
                     self.iterations += 1;
-                    break None;
+                    break Err(factor);
                 }
             };
             let Stages {
@@ -320,7 +325,7 @@ impl EndpointSteps {
                 ..
             } = stages;
             if !stays_between::<S>(way.bounds, state.position, moved, swing, bend, displacement) {
-                break Some(End::Blocked);
+                break Ok(Some(End::Blocked));
             }
             // One fewer next time, or two, if that would have done: an iteration moves the end by what
             // the one before has left.
@@ -340,23 +345,23 @@ impl EndpointSteps {
             let another = self.seen.another_length(length, wanted);
             self.length = another.or(self.length);
             if left == 0.0 {
-                break Some(End::Reached);
+                break Ok(Some(End::Reached));
             }
             // Unless as many steps are left of the new length as of this one.
             if another.is_some_and(|next| (left * length / next - 1e-9).ceil() != left) {
                 self.iterations += 1;
-                break None;
+                break Ok(None);
             }
             if taken == RENEWED {
                 way.now = way.now.add(DoubleDouble::times(length, taken));
                 taken = 0.0;
-                local = equation.at(&way.time());
+                *local = equation.at(&way.time());
                 if let Some([_, angle]) = local.harmonic() {
                     phase = sine_and_cosine(simd, angle);
                 }
                 let positions = unpair(shifted(displacement, state.position - moved));
                 self.slope
-                    .include(simd.level(), &local, phase[0], state.rate, &positions);
+                    .include(simd.level(), local, phase[0], state.rate, &positions);
             } else if alternates {
                 phase = plan.turned(phase);
             }
@@ -364,28 +369,31 @@ impl EndpointSteps {
         };
         self.iterations = self.iterations.min(MOST_ITERATIONS);
         way.now = way.now.add(DoubleDouble::times(length, taken));
-        if let Some((g, displacement, moved)) = last {
-            let acceleration = plan.last(simd, g) + slope * moved;
-            if end == Some(End::Reached) {
-                // What rounding has left of the way.
-                let rest = way.target.since(way.now);
-                state.position += rest * state.rate;
-                state.rate += rest * acceleration;
-                way.now = way.target;
+        let Some((g, displacement, moved)) = last else {
+            if end.is_err() {
+                // A guess that leads nowhere is not made again.
+                self.before = None;
             }
-            (self.half, self.product) = (half, product);
-            self.before = Some(Before {
-                moved,
-                acceleration,
-                g: unpair(g),
-                displacement: unpair(displacement),
-            });
-        } else if end.is_none() {
-            // A guess that leads nowhere is not made again.
-            self.before = None;
+            return end;
+        };
+        let acceleration = plan.last(simd, g) + slope * moved;
+        if end == Ok(Some(End::Reached)) {
+            // What rounding has left of the way.
+            let rest = way.rest();
+            state.position += rest * state.rate;
+            state.rate += rest * acceleration;
+            way.now = way.target;
         }
+        (self.half, self.product) = (half, product);
+        self.before = Some(Before {
+            moved,
+            acceleration,
+            g: unpair(g),
+            displacement: unpair(displacement),
+        });
         way.state = state;
-        end
+        // Those before one that is refused are taken.
+        Ok(end.unwrap_or(None))
     }
 
     /// half²·J of the plan of `count` steps from here.

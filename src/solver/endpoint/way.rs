@@ -2,6 +2,7 @@
 
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::State;
+use crate::solver::step_control::StepControl;
 
 /// A way to go.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,8 @@ pub struct Way {
     pub target: DoubleDouble,
     /// Positions between which steps may go.
     pub bounds: (f64, f64),
+    /// What a step may miss.
+    pub control: StepControl,
     /// How many steps may still be solved.
     pub budget: u32,
 }
@@ -25,6 +28,12 @@ impl Way {
     #[inline]
     pub fn time(&self) -> DoubleDouble {
         self.begin.add(self.now)
+    }
+
+    /// How long it still is.
+    #[inline]
+    pub fn rest(&self) -> f64 {
+        self.target.since(self.now)
     }
 }
 

@@ -60,22 +60,17 @@ impl Trajectory {
             state: self.start.state,
             target: DoubleDouble::new(step),
             bounds: self.bounds(),
+            control: self.step_control(false),
             budget: MOST_AT_ONCE,
         };
-        let end = self.go(equation, &mut way);
+        let level = self.settings.level;
+        let end = self.method.endpoint.go(level, equation, &mut way);
         if end == End::Reached {
             self.start.state = way.state;
         } else {
             self.method.endpoint.restart();
         }
         end
-    }
-
-    /// Goes the way by endpoint-only steps as far as they can.
-    fn go<E: Equation>(&mut self, equation: &E, way: &mut Way) -> End {
-        let control = self.step_control(false);
-        let steps = &mut self.method.endpoint;
-        steps.go(self.settings.level, equation, control, way)
     }
 
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
@@ -95,9 +90,11 @@ impl Trajectory {
             state: self.state(),
             target: target.sub(begin),
             bounds: self.bounds(),
+            control: self.step_control(false),
             budget: *budget,
         };
-        let end = self.go(equation, &mut way);
+        let level = self.settings.level;
+        let end = self.method.endpoint.go(level, equation, &mut way);
         *budget = way.budget;
         let shift = if end == End::Reached {
             target

@@ -17,7 +17,7 @@ use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
 use super::step_control::{
-    Accepted, Growth, HALVED, SHORTEST, StepControl, first_accepted, goes_on_from,
+    HALVED, SHORTEST, StepControl, first_accepted, goes_on_from, most_growth,
 };
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
@@ -307,10 +307,7 @@ impl Trajectory {
         let shortest = (SHORTEST * free).min(0.5 * most);
         let longest = free.min(most);
         let last = self.history.steps().last();
-        let growth = Growth {
-            before: last.map(|step| step.segment.length()),
-            acceleration: ACCELERATION,
-        };
+        let length_before = last.map(|step| step.segment.length());
         let before = last
             .map(|step| *step.segment.series())
             .filter(|before| goes_on_from(before.half, longest));
@@ -318,11 +315,7 @@ impl Trajectory {
             Some(before) => Guess::Before(before),
             None => Guess::Begin(local.acceleration_from(state)),
         };
-        let Accepted {
-            step,
-            length,
-            factor,
-        } = first_accepted(longest, shortest, growth, |length| {
+        let (step, length, factor) = first_accepted(longest, shortest, |&mut length| {
             let tolerance = control.iteration_tolerance(scale, FIRST_STEP * length / free);
             let step = solve_by_16(self.settings.level, local, state, length, tolerance, guess)
                 .map_err(|Diverged| HALVED)?;
@@ -338,7 +331,8 @@ impl Trajectory {
                 let missed = short * step.tail() / neglected;
                 control.judge(missed / scale, step.contraction)?
             };
-            Ok((step, factor))
+            let most = most_growth(length, longest, length_before, ACCELERATION);
+            Ok((step, length, factor.min(most)))
         })?;
         // A step cut short says little about the next one.
         self.next_length = Some(if length == most {

@@ -10,7 +10,7 @@ use crate::solver::dense_output::Segment;
 use crate::solver::integrator::Mode;
 use crate::solver::iteration::{Diverged, IterationTolerance};
 use crate::solver::step_control::{
-    Accepted, Growth, HALVED, SLOW, StepControl, first_accepted, goes_on_from, judge,
+    HALVED, SLOW, StepControl, first_accepted, goes_on_from, judge, most_growth,
 };
 
 /// Part of the tolerance that one step may spend between its ends: a motion may swing by much
@@ -165,16 +165,10 @@ impl Trajectory {
         let most = most.min(seen);
         let shortest = (SHORTEST_TRANSIENT * scale).min(0.5 * most);
         let before = self.slopes_of_last_step(fresh);
-        let growth = Growth {
-            before: before.as_ref().map(|last| 2.0 * last.half),
-            acceleration: ACCELERATION,
-        };
+        let length_before = before.as_ref().map(|last| 2.0 * last.half);
+        let longest = free.min(most);
         let control = demands.control;
-        let Accepted {
-            step,
-            length,
-            factor,
-        } = first_accepted(free.min(most), shortest, growth, |length| {
+        let (step, length, factor) = first_accepted(longest, shortest, |&mut length| {
             let part = (length / scale).min(1.0);
             let task = Task {
                 start,
@@ -231,7 +225,8 @@ impl Trajectory {
                 SLOW / step.contraction
             };
             let factor = judge(ratio, order, effort)?;
-            Ok((step, factor))
+            let most = most_growth(length, longest, length_before, ACCELERATION);
+            Ok((step, length, factor.min(most)))
         })?;
         // A step cut short says little about the next one.
         self.next_length = Some(if length == most && factor >= 1.0 {
