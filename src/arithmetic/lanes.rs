@@ -7,16 +7,18 @@ use fearless_simd::{Simd, SimdBase, SimdFloat, SimdFrom, f64x4, f64x8};
 use super::number::Number;
 use super::sine;
 
-/// The length of a loop that stays one where registers hold two numbers: there it takes so many instructions
-/// that, unrolled, it would be larger and no faster. The compiler does not see the length, and would check an
-/// index that is not taken modulo the true one.
+/// 0 to N − 1 for a loop that stays one: unrolled, it would be larger and no faster. The compiler does not see its
+/// length, and would check an index that is not taken modulo the true one.
 #[inline(always)]
-pub fn rolled<S: Simd>(length: usize) -> usize {
-    if <S::f64s as SimdBase<S>>::LEN == 2 {
-        black_box(length)
-    } else {
-        length
-    }
+pub fn rolled<const N: usize>() -> impl Iterator<Item = usize> {
+    (0..black_box(N)).map(|i| i % N)
+}
+
+/// [`rolled`] where registers hold two numbers, so that a turn of the loop takes twice the instructions.
+#[inline(always)]
+pub fn rolled_if_narrow<S: Simd, const N: usize>() -> impl Iterator<Item = usize> {
+    let is_narrow = <S::f64s as SimdBase<S>>::LEN == 2;
+    (0..if is_narrow { black_box(N) } else { N }).map(|i| i % N)
 }
 
 /// P numbers that are computed together.

@@ -13,7 +13,7 @@ use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{NODES, Pair, both_permuted, multiply, pair, unpair};
 use super::table::TABLE;
-use crate::arithmetic::lanes::rolled;
+use crate::arithmetic::lanes::rolled_if_narrow;
 use crate::arithmetic::legendre;
 use crate::arithmetic::number::Number;
 
@@ -86,8 +86,7 @@ pub fn resampled<S: Simd>(
     }
     let g = unpair(g);
     let mut series = [f64x4::splat(simd, 0.0); 2];
-    for j in 0..rolled::<S>(NODES) {
-        let j = j % NODES;
+    for j in rolled_if_narrow::<S, NODES>() {
         let value = f64x4::splat(simd, g[j]);
         let [low, high] = pair(simd, &TABLE.series[j]);
         series = [

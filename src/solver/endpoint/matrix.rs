@@ -1,35 +1,30 @@
 //! The matrices of a slope.
-//!
-//! The loops stay loops, of a length that the compiler does not see: unrolled, they would be larger and no faster.
 
 #![expect(
     clippy::needless_range_loop,
     reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
 )]
 
-use std::hint::black_box;
-
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::plan::{NODES, both_permuted, load, multiply, pair, scaled, unpair};
 use super::table::{Dense, Diagonals, Matrices, TABLE};
+use crate::arithmetic::lanes::rolled;
 use crate::arithmetic::number::Number;
 
 /// A matrix by rows.
 type Matrix = [[f64; NODES]; NODES];
 
 /// Makes the matrices [A, B] to [W·A, B·W], where W = (1 − slope·A)⁻¹. The slope begins to act at one node after the
-/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0. Both loops
-/// stay loops, of whatever width registers are: a slope is seldom made.
+/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0.
 #[inline(always)]
 fn include_slope<S: Simd>(simd: S, slope: f64, matrices: &mut [Matrix; 2]) {
-    for p in 0..black_box(NODES) {
-        let p = p % NODES;
+    for p in rolled::<NODES>() {
         let own = &matrices[0][p];
         let own = scaled(pair(simd, own), slope / (1.0 - slope * own[p]));
         let rows = matrices.as_flattened_mut();
-        for r in 0..black_box(2 * NODES) {
-            let row = &mut rows[r % (2 * NODES)];
+        for r in rolled::<{ 2 * NODES }>() {
+            let row = &mut rows[r];
             let factor = f64x4::splat(simd, row[p]);
             let [low, high] = pair(simd, row);
             *row = unpair([own[0].mul_add(factor, low), own[1].mul_add(factor, high)]);
@@ -85,8 +80,7 @@ fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
         own[k] = load(simd, &plain.end[k]) * slope;
         end_drift = own[k].mul_add(f64x4::splat(simd, matrices.drift[k]), end_drift);
     }
-    for j in 0..black_box(NODES) {
-        let j = j % NODES;
+    for j in rolled::<NODES>() {
         let mut end = f64x4::splat(simd, 0.0);
         for k in 0..NODES {
             end = own[k].mul_add(f64x4::splat(simd, twice[k][j]), end);

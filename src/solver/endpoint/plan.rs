@@ -17,7 +17,7 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use super::continuation::{Bell, resampled};
 use super::matrix::with_slope;
 use super::table::{Diagonals, Matrices, TABLE};
-use crate::arithmetic::lanes::{Lanes, rolled};
+use crate::arithmetic::lanes::{Lanes, rolled_if_narrow};
 use crate::arithmetic::number::Number;
 use crate::arithmetic::sine::{sine_of_sum, turned};
 
@@ -176,8 +176,7 @@ impl Plan {
         let from = if slopes { &self.unscaled } else { &TABLE.plain };
         let square = half * half;
         let to = &mut self.matrices;
-        for x in 0..rolled::<S>(NODES) {
-            let x = x % NODES;
+        for x in rolled_if_narrow::<S, NODES>() {
             for register in 0..2 {
                 (load(simd, &from.twice[x][register]) * square)
                     .store_slice(&mut to.twice[x][register]);
@@ -185,8 +184,7 @@ impl Plan {
             }
         }
         let by_values = load(simd, &[square, half, square, square]);
-        for j in 0..rolled::<S>(NODES) {
-            let j = j % NODES;
+        for j in rolled_if_narrow::<S, NODES>() {
             (load(simd, &from.end[j]) * by_values).store_slice(&mut to.end[j]);
         }
         let by_rate = load(simd, &[half, 1.0, half, half]);
