@@ -395,10 +395,4 @@ mod tests {
             assert!((cubic().rate(t) - v(t)).abs() < 1e-14);
         }
     }
-
-    #[test]
-    fn a_crossing_is_found_to_the_last_bits() {
-        let root = crossing(0.0, 4.0, |offset| cubic().position(offset));
-        assert!((root - 1.0).abs() < 1e-15, "{root}");
-    }
 }

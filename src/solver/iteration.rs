@@ -29,19 +29,9 @@ impl IterationTolerance {
         }
     }
 
-    /// Whether an iteration that changed the position by `change`, after one by `last_change`,
-    /// came near enough. The error left is the change times the rate of convergence, which is given
+    /// Whether stages have converged that were iterated this often, the last time so that the position changed by
+    /// `change`, after a `last_change`. The error left is the change times the rate of convergence, which is given
     /// as two numbers that have that ratio.
-    #[inline(always)]
-    pub fn is_met(&self, change: f64, last_change: f64, rate: [f64; 2]) -> bool {
-        let [small, large] = rate;
-        change <= self.rounding
-            || change * small <= self.error * (large - small)
-            || change >= last_change && change <= 16.0 * self.rounding
-    }
-
-    /// Whether stages have converged that were iterated this often; for the rest see
-    /// [`IterationTolerance::is_met`].
     ///
     /// # Errors
     /// [`Diverged`] where a further iteration is of no use.
@@ -51,9 +41,12 @@ impl IterationTolerance {
         iterations: u32,
         change: f64,
         last_change: f64,
-        rate: [f64; 2],
+        [small, large]: [f64; 2],
     ) -> Result<bool, Diverged> {
-        if self.is_met(change, last_change, rate) {
+        let is_met = change <= self.rounding
+            || change * small <= self.error * (large - small)
+            || change >= last_change && change <= 16.0 * self.rounding;
+        if is_met {
             return Ok(true);
         }
         // Before the second iteration there may be no change. NaN fails each comparison.
