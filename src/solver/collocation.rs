@@ -243,10 +243,7 @@ fn solve<S: Simd, L: LocalEquation>(
         if convergence.is_reached_by(change)? {
             let highest = new[0].max(new[1]).largest();
             let lowest = new[0].min(new[1]).smallest();
-            let end = State {
-                position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
-                rate: start.rate + length * mean,
-            };
+            let end = start.after(half, [mean, tilt]);
             if !(end.position.is_finite() && end.rate.is_finite() && lowest.is_finite()) {
                 return Err(Diverged);
             }

@@ -60,14 +60,8 @@ impl Linearized {
             self.by_position[i] * drift + self.by_rate[i] * start.rate + g[i]
         });
         let f = self.system.solve(&free)?;
-        let square = self.half * self.half;
         let series = product(&GAUSS_16.series, &f.into());
-        let [mean, tilt] = [series[0], series[1] / 3.0];
-        let length = 2.0 * self.half;
-        let end = State {
-            position: start.position + (length * start.rate + 2.0 * square * (mean - tilt)),
-            rate: start.rate + length * mean,
-        };
+        let end = start.after(self.half, [series[0], series[1] / 3.0]);
         let series = Series::new(self.half, &series.into());
         Some(Segment::new(start, end, &series))
     }

@@ -2,6 +2,7 @@
 
 use fearless_simd::Simd;
 
+use super::Slope;
 use super::nodes::Nodes;
 use super::polynomials::{LegendreCoefficients, TERMS};
 use crate::arithmetic::legendre;
@@ -29,29 +30,30 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
         }
     }
 
-    /// The state as it goes on from a step of half the length `before`, whose slopes are given.
+    /// The state as it goes on from the step `before`, of which half the length and the slopes are given, or with
+    /// its `first` slope. One that relaxes within the step is taken to stay where it is: a fast transient would lead
+    /// far away.
     #[inline(always)]
-    pub fn continued(
+    pub fn guess(
         simd: S,
         rule: &Rule<N>,
         half: f64,
-        before: f64,
-        series: &LegendreCoefficients,
+        first: Slope,
+        before: Option<(f64, &LegendreCoefficients)>,
     ) -> Self {
         let fill = |value: f64| Nodes::fill(simd, value);
-        let place: Nodes<S, R> = Nodes::load(simd, &rule.place);
-        let u = place.mul_add(fill(half / before), fill(1.0));
-        let slopes = legendre::sum(u, CONTINUED, |degree| fill(series[degree]));
         let mut values = StageValues::constant(simd);
-        values.take(simd, rule, half, slopes);
-        values
-    }
-
-    /// The state with this slope.
-    #[inline(always)]
-    pub fn going(simd: S, rule: &Rule<N>, half: f64, slope: f64) -> Self {
-        let mut values = StageValues::constant(simd);
-        values.take(simd, rule, half, Nodes::fill(simd, slope));
+        if half * first.relaxation <= 1.0 {
+            let slopes = match before {
+                Some((before, series)) => {
+                    let place: Nodes<S, R> = Nodes::load(simd, &rule.place);
+                    let u = place.mul_add(fill(half / before), fill(1.0));
+                    legendre::sum(u, CONTINUED, |degree| fill(series[degree]))
+                }
+                None => fill(first.value),
+            };
+            values.take(simd, rule, half, slopes);
+        }
         values
     }
 
@@ -70,12 +72,6 @@ impl<S: Simd, const R: usize, const N: usize> StageValues<S, R, N> {
         let change = (gain - self.gain).largest();
         self.gain = gain;
         change
-    }
-
-    /// The Legendre coefficients of the slopes.
-    #[inline(always)]
-    pub fn series(&self, rule: &Rule<N>) -> LegendreCoefficients {
-        series(rule, &self.slopes)
     }
 }
 

@@ -20,6 +20,7 @@ use super::stage_values::{StageValues, series};
 use super::{FullState, LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Sizes, Stage};
 use crate::solver::State;
 use crate::solver::iteration::{Convergence, Diverged, IterationTolerance};
+use crate::solver::step_control::StepControl;
 use crate::solver::tables::{GAUSS_8, GAUSS_16, RADAU_8, RADAU_16, Rule};
 
 /// Matrices that let an iteration shrink its change by less than this factor are made anew.
@@ -47,6 +48,19 @@ pub(super) struct Slopes {
     pub internal: [LegendreCoefficients; MOST_STATES],
 }
 
+/// What is asked of all steps of a motion.
+#[derive(Debug)]
+pub(super) struct Demands {
+    /// The number of first-order states.
+    pub states: usize,
+    /// The number of integrals.
+    pub integrals: usize,
+    /// Whether 8 nodes are to be enough.
+    pub few: bool,
+    /// What a step may miss.
+    pub control: StepControl,
+}
+
 /// What a step is asked for.
 #[derive(Debug)]
 pub(super) struct Task<'a> {
@@ -54,10 +68,8 @@ pub(super) struct Task<'a> {
     pub start: &'a FullState,
     /// Its length.
     pub length: f64,
-    /// The number of first-order states.
-    pub states: usize,
-    /// The number of integrals.
-    pub integrals: usize,
+    /// What is asked of all steps.
+    pub demands: &'a Demands,
     /// What errors are compared to.
     pub sizes: &'a Sizes,
     /// When the iteration ends, in units of the sizes.
@@ -143,11 +155,10 @@ pub(super) fn solve<L: LocalCoupledEquation>(
     level: Level,
     local: &L,
     task: &Task,
-    (iteration, few): (Iteration, bool),
+    iteration: Iteration,
     work: &mut u32,
 ) -> Result<Step, Diverged> {
-    let stiff = iteration != Iteration::FixedPoint;
-    match (stiff, few) {
+    match (iteration != Iteration::FixedPoint, task.demands.few) {
         (false, false) => solve_by::<L, 2, 16>(level, &GAUSS_16, local, task, iteration, work),
         (false, true) => solve_by::<L, 1, 8>(level, &GAUSS_8, local, task, iteration, work),
         (true, false) => solve_by::<L, 2, 16>(level, &RADAU_16, local, task, iteration, work),
@@ -187,8 +198,9 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
     let &Task {
         start,
         length,
-        states,
-        integrals,
+        demands: &Demands {
+            states, integrals, ..
+        },
         sizes,
         tolerance,
         before,
@@ -205,25 +217,12 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
     let first_slopes = local.slopes(first_load, &first_stage);
     let first = local.acceleration(first_load, &first_stage);
     let mut internal = [StageValues::<S, R, N>::constant(simd); MOST_STATES];
-    let mut motion = StageValues::<S, R, N>::constant(simd);
-    // Where a state relaxes within the step it is taken to stay where it is: a fast transient would
-    // lead far away.
     for k in 0..states {
-        if half * first_slopes[k].relaxation <= 1.0 {
-            internal[k] = match before {
-                Some(last) => {
-                    StageValues::continued(simd, rule, half, last.half, &last.internal[k])
-                }
-                None => StageValues::going(simd, rule, half, first_slopes[k].value),
-            };
-        }
+        let series = before.map(|last| (last.half, &last.internal[k]));
+        internal[k] = StageValues::guess(simd, rule, half, first_slopes[k], series);
     }
-    if half * first.relaxation <= 1.0 {
-        motion = match before {
-            Some(last) => StageValues::continued(simd, rule, half, last.half, &last.motion),
-            None => StageValues::going(simd, rule, half, first.value),
-        };
-    }
+    let series_before = before.map(|last| (last.half, &last.motion));
+    let mut motion = StageValues::guess(simd, rule, half, first, series_before);
     let mut bent = Nodes::product(simd, &rule.twice, &motion.slopes) * fill(half * half);
     // A guess that leads far away may look like a solution: what Newton's method makes of it hardly moves.
     let is_near = bent.largest() <= FARTHEST_GUESS * sizes.position;
@@ -322,24 +321,21 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             [0.0; TERMS]
         }
     });
-    let series = Slopes {
+    let slopes = Slopes {
         half,
-        motion: motion.series(rule),
+        motion: series(rule, &motion.slopes),
         internal: std::array::from_fn(|k| {
             if k < states {
-                internal[k].series(rule)
+                series(rule, &internal[k].slopes)
             } else {
                 [0.0; TERMS]
             }
         }),
     };
-    let [mean, tilt] = [series.motion[0], series.motion[1] / 3.0];
+    let [mean, first, ..] = slopes.motion;
     let end = FullState {
-        motion: State {
-            position: position + (length * rate + 2.0 * half * half * (mean - tilt)),
-            rate: rate + length * mean,
-        },
-        internal: std::array::from_fn(|k| start.internal[k] + length * series.internal[k][0]),
+        motion: start.motion.after(half, [mean, first / 3.0]),
+        internal: std::array::from_fn(|k| start.internal[k] + length * slopes.internal[k][0]),
         integrals: std::array::from_fn(|k| start.integrals[k] + length * powers[k][0]),
     };
     if !end.is_finite() || !local.admits(&end.stage()) {
@@ -351,7 +347,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
     ];
     Ok(Step {
         end,
-        series,
+        series: slopes,
         powers,
         nodes: N,
         stiff: iteration != Iteration::FixedPoint,

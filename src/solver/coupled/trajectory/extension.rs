@@ -4,7 +4,7 @@ use super::Trajectory;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::collocation::Series;
 use crate::solver::coupled::polynomials::Polynomials;
-use crate::solver::coupled::stages::{self, Iteration, Slopes, Step, Task};
+use crate::solver::coupled::stages::{self, Demands, Iteration, Slopes, Step, Task};
 use crate::solver::coupled::{CoupledEquation, FullState, LocalCoupledEquation, Sizes, Slope};
 use crate::solver::dense_output::Segment;
 use crate::solver::integrator::Mode;
@@ -46,14 +46,6 @@ const ACCELERATION: i32 = 2;
 
 /// The typical size may shrink by this factor in a step: f is then singular ahead.
 const SHRINKING: f64 = 0.3;
-
-/// What is asked of a step.
-struct Demands {
-    states: usize,
-    integrals: usize,
-    few: bool,
-    control: StepControl,
-}
 
 impl Trajectory {
     /// Follows the motion over one more step from the end of the last step, which the caller
@@ -149,15 +141,14 @@ impl Trajectory {
         let scale = 1.0 / local.natural_frequency(&stage);
         let load = local.load(0.0);
         let slopes = local.slopes(load, &stage);
-        let damping = local.acceleration(load, &stage).relaxation;
-        let relaxations = slopes[..demands.states]
-            .iter()
-            .map(|slope| slope.relaxation);
+        let force = local.acceleration(load, &stage);
+        let slopes = &slopes[..demands.states];
+        let relaxations = slopes.iter().map(|slope| slope.relaxation);
         let relaxation = relaxations.fold(0.0, f64::max);
         let mut free = self.next_length.unwrap_or(FIRST_STEP * scale);
         let fresh = self.history.is_empty();
         if fresh {
-            free = free.min(self.transient(local, start, &sizes, demands));
+            free = free.min(self.transient(force, slopes, &sizes, demands.control));
         }
         // Two periods of the load, or it would be mistaken for a slow one.
         let nodes = if demands.few { 0.5 } else { 1.0 };
@@ -173,8 +164,7 @@ impl Trajectory {
             let task = Task {
                 start,
                 length,
-                states: demands.states,
-                integrals: demands.integrals,
+                demands,
                 sizes: &sizes,
                 tolerance: IterationTolerance::new(control.end_tolerance_within(part), ROUNDED),
                 before: before
@@ -182,17 +172,15 @@ impl Trajectory {
                     .filter(|last| goes_on_from(last.half, length)),
             };
             let fast = |relaxation: f64| 0.5 * length * relaxation > SLOW_RELAXATION;
-            let iteration = if fast(damping) {
+            let iteration = if fast(force.relaxation) {
                 Iteration::Newton
             } else if fast(relaxation) {
                 Iteration::States
             } else {
                 Iteration::FixedPoint
             };
-            let mut solve = |iteration| {
-                let way = (iteration, demands.few);
-                stages::solve(self.settings.level, local, &task, way, work)
-            };
+            let mut solve =
+                |iteration| stages::solve(self.settings.level, local, &task, iteration, work);
             let solved = match solve(iteration) {
                 Err(Diverged) if iteration != Iteration::Newton => solve(Iteration::Newton),
                 solved => solved,
@@ -244,27 +232,24 @@ impl Trajectory {
     }
 
     /// The longest first step that sees the transients which begin where slopes have jumped.
-    fn transient<L: LocalCoupledEquation>(
+    fn transient(
         &self,
-        local: &L,
-        start: &FullState,
+        force: Slope,
+        slopes: &[Slope],
         sizes: &Sizes,
-        demands: &Demands,
+        control: StepControl,
     ) -> f64 {
-        let stage = start.stage();
-        let load = local.load(0.0);
         let (before, before_internal) = self.method.slopes_before.unwrap_or_default();
         let mut longest = f64::INFINITY;
         let mut limit = |slope: Slope, before: f64, size: f64| {
             let excursion = (slope.value - before).abs() / slope.relaxation;
-            if excursion > demands.control.tolerance * size {
+            if excursion > control.tolerance * size {
                 longest = longest.min(FIRST_RELAXATION / slope.relaxation);
             }
         };
-        limit(local.acceleration(load, &stage), before, sizes.rate);
-        let slopes = local.slopes(load, &stage);
-        for k in 0..demands.states {
-            limit(slopes[k], before_internal[k], sizes.internal[k]);
+        limit(force, before, sizes.rate);
+        for (k, slope) in slopes.iter().enumerate() {
+            limit(*slope, before_internal[k], sizes.internal[k]);
         }
         longest
     }
