@@ -18,7 +18,7 @@ PAGE = ROOT / "docs" / "performance.md"
 
 PLACES = {
     "packed FMU": "ours, packed FMU",
-    "AVX-512, called from Rust": "ours",
+    "widest SIMD, called from Rust": "ours",
     "AVX2, called from Rust": "ours AVX2",
     "baseline SIMD": "ours baseline SIMD",
     "every period integrated": "ours without orbit reuse",
@@ -90,15 +90,48 @@ def communication_steps(rows: list[dict]) -> str:
     )
 
 
+def processors() -> str:
+    """The packed FMU against heyoka, and an ensemble against scenes one by one, in the newest record of each processor."""
+    lines = []
+    names = ["d", "e", *(case.name for case in random_cases())]
+    for folder in sorted((HERE / "records").iterdir(), reverse=True):
+        record = max(folder.glob("*"))
+        facts, rows = read(record / "work_precision.csv")
+        _, scenes = read(record / "ensemble.csv")
+        for level in LEVELS:
+            ratios = [ratio(rows, name, PLACES["packed FMU"], level) for name in names]
+            many, single = (
+                next(
+                    float(row["nanoseconds"])
+                    for row in scenes
+                    if row["method"] == method and float(row["tolerance"]) == level
+                )
+                for method in ("ours, ensemble", "ours, one by one")
+            )
+            processor = f"{facts['processor']}, {facts['family and model']} ({facts['SIMD'].split()[0]}), {record.name}"
+            lines.append(
+                [
+                    processor if level == LEVELS[0] else "",
+                    f"{level:g}",
+                    *(times(one) for one in ratios[:2]),
+                    *with_summary(ratios[2:])[-2:],
+                    times(single / many),
+                ]
+            )
+    heads = ["Processor and date", "Error", "d", "e", "random sets, median", "least", "ensemble, × one by one"]
+    return markdown(heads, lines)
+
+
 def tables(record: Path) -> list[str]:
-    """All tables of the page that the record gives."""
+    """All tables of the page that the record gives, and the one of all processors."""
     made = {
         "work_precision.csv": (against_heyoka, random_sets),
         "ensemble.csv": (ensemble_table,),
         "co_simulation.csv": (communication_steps,),
         "skips.csv": (skip_table,),
     }
-    return [table(read(record / name)[1]) for name, makers in made.items() for table in makers]
+    of_record = [table(read(record / name)[1]) for name, makers in made.items() for table in makers]
+    return [*of_record, processors()]
 
 
 def renewed(text: str, record: Path) -> str:

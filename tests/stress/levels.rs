@@ -14,7 +14,6 @@ fn levels() -> Vec<(&'static str, bool, Level)> {
         let best = Level::new();
         let found = [
             ("SSE2", false, best.as_sse2().map(Level::Sse2)),
-            ("SSE4.2", false, best.as_sse4_2().map(Level::Sse4_2)),
             ("AVX2", true, best.as_avx2().map(Level::Avx2)),
             ("AVX-512", true, best.as_avx512().map(Level::Avx512)),
         ];
