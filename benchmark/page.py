@@ -91,7 +91,7 @@ def communication_steps(rows: list[dict]) -> str:
 
 
 def processors() -> str:
-    """The packed FMU against heyoka, and an ensemble against scenes one by one, in the newest record of each processor."""
+    """The packed FMU against heyoka, and an ensemble against single scenes, in each processor's newest record."""
     lines = []
     names = ["d", "e", *(case.name for case in random_cases())]
     for folder in sorted((HERE / "records").iterdir(), reverse=True):
