@@ -23,7 +23,7 @@ use crate::solver::limits::Limits;
 /// Values of f that are kept from the steps before a block.
 pub const HISTORY: usize = 16;
 
-/// Steps that are taken between two looks at the lanes.
+/// Steps that are taken between two looks at the lanes: pairs of them, and a multiple of [`ESTIMATED`].
 pub const BLOCK: usize = 32;
 
 /// By which factor (ωh)² may become larger than where the formula is stable.
@@ -233,16 +233,17 @@ impl LaneStates {
         let mut position = begin - miss * fill(formula.miss_twice);
         let mut way = load(&self.rate) * step - miss * fill(formula.miss_once);
         let mut f = load(&self.f[HISTORY - 1]);
-        // Two steps share what they load. Nothing else is done here: registers are too few for it.
+        // Two steps share what they load, and nothing else is done here, for which registers would be too few: .68 to
+        // .8 of the time on AVX2.
         for i in (0..BLOCK).step_by(2) {
             let mut sums = [[fill(0.0); 2]; 2];
             for back in (0..POINTS).rev() {
                 let f = load(&self.f[HISTORY - 1 + i - back]);
                 // What depends on the last step comes last: a sum of all in turn would be waited for.
-                for (step, weight) in [(0, back), (1, back + 1)] {
+                for (sums, weight) in sums.iter_mut().zip(back..) {
                     if (1..POINTS).contains(&weight) {
-                        let [twice, once] = sums[step];
-                        sums[step] = [
+                        let [twice, once] = *sums;
+                        *sums = [
                             f.mul_add(fill(formula.twice[weight]), twice),
                             f.mul_add(fill(formula.once[weight]), once),
                         ];
@@ -266,7 +267,7 @@ impl LaneStates {
             largest = largest.max(load(&self.f[HISTORY + i]).abs());
         }
         let mut worst = fill(0.0);
-        for end in (0..=BLOCK).step_by(ESTIMATED).skip(1) {
+        for end in (ESTIMATED..=BLOCK).step_by(ESTIMATED) {
             miss = Falkner::<POINTS>::miss(simd, &self.f[HISTORY + end - POINTS..]);
             worst = worst.max(miss.abs());
         }

@@ -45,6 +45,17 @@ impl Pair {
         self.theirs.handle_events();
     }
 
+    /// Makes the changes. The charge that is a state afterwards must be the one of before to this part.
+    fn change_with_the_charge_kept(&mut self, changes: &[Change], part: f64) {
+        let before = self.agree("charge", 1e-11);
+        self.change(changes);
+        let after = self.agree("charge_state", 1e-11);
+        assert!(
+            (after / before - 1.0).abs() < part,
+            "{changes:?}: {before} {after}"
+        );
+    }
+
     fn agree(&self, name: &str, size: f64) -> f64 {
         let [a, b] = [&self.ours, &self.theirs.host].map(|host| host.get(name));
         assert!((a - b).abs() < 1e-7 * size, "{name}: {a} {b}");
@@ -89,13 +100,7 @@ fn a_resistance_switched_on_finds_the_charge_of_before() {
     for order in orders(&changes) {
         let mut pair = Pair::begun(&[("f_ac", 3e5)]);
         pair.advance();
-        let before = pair.agree("charge", 1e-11);
-        pair.change(&order);
-        let after = pair.agree("charge_state", 1e-11);
-        assert!(
-            (after / before - 1.0).abs() < 1e-7,
-            "{order:?}: {before} {after}"
-        );
+        pair.change_with_the_charge_kept(&order, 1e-7);
         pair.agree_in_everything();
         pair.advance();
         pair.agree_in_everything();
@@ -107,13 +112,7 @@ fn a_resistance_switched_on_finds_the_charge_of_before() {
 fn at_the_start_it_finds_the_charge_of_the_start() {
     for order in orders(&[("voltage", 300.0), ("R_s", 1e7)]) {
         let mut pair = Pair::begun(&[]);
-        let before = pair.agree("charge", 1e-11);
-        pair.change(&order);
-        let after = pair.agree("charge_state", 1e-11);
-        assert!(
-            (after / before - 1.0).abs() < 1e-12,
-            "{order:?}: {before} {after}"
-        );
+        pair.change_with_the_charge_kept(&order, 1e-12);
         pair.advance();
         pair.agree_in_everything();
     }
@@ -124,10 +123,7 @@ fn at_the_start_it_finds_the_charge_of_the_start() {
 fn a_resistance_switched_off_for_no_time_keeps_the_charge() {
     let mut pair = Pair::begun(&[("R_s", 1e7)]);
     pair.advance();
-    let before = pair.agree("charge", 1e-11);
-    pair.change(&[("R_s", 0.0), ("voltage", 200.0), ("R_s", 2e7)]);
-    let after = pair.agree("charge_state", 1e-11);
-    assert!((after / before - 1.0).abs() < 1e-7, "{before} {after}");
+    pair.change_with_the_charge_kept(&[("R_s", 0.0), ("voltage", 200.0), ("R_s", 2e7)], 1e-7);
     pair.advance();
     pair.agree_in_everything();
 }
