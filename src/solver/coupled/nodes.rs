@@ -70,12 +70,16 @@ impl<S: Simd, const R: usize> Nodes<S, R> {
     /// `Σ_j column[j] · value[j]`, in a fixed order.
     #[cfg_attr(not(target_arch = "wasm32"), inline(always))]
     pub fn product<const N: usize>(simd: S, columns: &Columns<N>, values: &[f64; N]) -> Self {
-        let mut sums = [Nodes::fill(simd, 0.0); 2];
-        for j in 0..N {
+        let [mut even, mut odd] = [Nodes::fill(simd, 0.0); 2];
+        // In pairs, so that both sums stay in registers.
+        for pair in 0..N / 2 {
+            let j = 2 * pair;
             let column: Self = Nodes::load(simd, &columns[j]);
-            sums[j % 2] = column.mul_add(Nodes::fill(simd, values[j]), sums[j % 2]);
+            even = column.mul_add(Nodes::fill(simd, values[j]), even);
+            let column: Self = Nodes::load(simd, &columns[j + 1]);
+            odd = column.mul_add(Nodes::fill(simd, values[j + 1]), odd);
         }
-        sums[0] + sums[1]
+        even + odd
     }
 
     /// The size of the largest number; NaN where one is that.
