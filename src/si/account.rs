@@ -9,7 +9,7 @@ use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{Account, Place, View};
 use crate::solver::State;
-use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, Stage};
+use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};
 
 /// The energies exchanged, the time of breakdown, and where the host's last step ended.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -205,8 +205,8 @@ impl SiAccount {
         let end = |state: &SiState, offset: f64| {
             let stage = basis.stage(state, state.motion.position);
             let load = local.load(offset);
-            let slopes = local.slopes(load, &stage).map(|slope| slope.value);
-            (stage, local.acceleration(load, &stage).value, slopes)
+            let (slopes, force) = local.derivatives(MOST_STATES, load, &stage);
+            (stage, force.value, slopes.map(|slope| slope.value))
         };
         let (first, last) = (end(&self.state, 0.0), end(state, span));
         let mut sum = [0.0; MOST_INTEGRALS];
@@ -230,7 +230,7 @@ impl SiAccount {
                 }),
             };
             let offset = part * span;
-            let slopes = local.slopes(local.load(offset), &stage);
+            let slopes = local.first_order(&local.load(offset), &stage);
             let powers = local.powers_at(offset, &stage, &slopes.map(|slope| slope.value));
             for (sum, power) in sum.iter_mut().zip(powers.all()) {
                 *sum += weight * power;

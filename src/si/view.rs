@@ -136,7 +136,7 @@ impl View<'_, Si> {
         let (basis, stage) = self.basis();
         let local = basis.local();
         let slopes = local
-            .slopes(local.load(0.0), &stage)
+            .first_order(&local.load(0.0), &stage)
             .map(|slope| slope.value);
         let Exchanged {
             damping,

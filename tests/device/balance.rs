@@ -14,7 +14,7 @@ use dielectric_elastomer_actuator::solver::coupled::{
 };
 use proptest::prelude::*;
 
-fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
+pub fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
     prop_oneof![Just(0.0), range]
 }
 
@@ -50,7 +50,7 @@ prop_compose! {
 }
 
 prop_compose! {
-    fn device()(
+    pub fn device()(
         decades in 0.0..5.0,
         surface in [off_or(0.0..0.1), off_or(0.0..0.1), off_or(0.0..0.3)],
         elasticity in elasticity(),

@@ -4,6 +4,7 @@ mod balance;
 #[path = "../clocked/mod.rs"]
 mod clocked;
 mod damped;
+mod endpoint_only;
 mod periods;
 mod plain;
 mod published;

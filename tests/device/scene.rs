@@ -196,7 +196,11 @@ impl Present {
         let stretch = local.stretch(position);
         let capacitance = local.capacitance(stretch);
         let voltage = local.membrane_voltage(&load, &stage);
-        let slopes = trajectory.slopes().unwrap_or_default();
+        // Endpoint-only steps keep no polynomials.
+        let slopes = trajectory.slopes().unwrap_or_else(|| {
+            let slopes = local.first_order(&load, &stage);
+            slopes.map(|slope| slope.value)
+        });
         Present {
             stored: local.stored(0.0, &stage),
             exchanged: Exchanged::from_integrals(&trajectory.integrals()),

@@ -11,7 +11,8 @@
 //! Stored energy, minus supplied energy, plus lost energy is constant.
 
 use super::elasticity::{Elasticity, invariant};
-use super::equation::{Load, LocalDevice, Powers};
+use super::equation::{Load, LocalDevice};
+use super::geometry::Powers;
 use super::parameters::Source;
 use crate::arithmetic::jet::Dual;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};

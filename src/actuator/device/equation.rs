@@ -13,8 +13,9 @@
 //!
 //! These follow from the energies and dissipations of [`super::energy`]; the balance is tested.
 
-use super::elasticity::{Elasticity, Locking, invariant};
-use super::parameters::{Branch, Device, Permittivity, Source};
+use super::elasticity::{Elasticity, invariant};
+use super::geometry::{Geometry, Powers};
+use super::parameters::{Branch, Device, Source};
 use crate::actuator::Drive;
 use crate::actuator::drive::LocalDrive;
 use crate::arithmetic::double_double::DoubleDouble;
@@ -37,77 +38,15 @@ pub struct LocalDevice<'a, P = f64> {
     pub(super) device: &'a Device<P>,
     pub(super) drive: LocalDrive<'a>,
     /// The stretch at position 0.
-    origin: f64,
+    pub(super) origin: f64,
     /// Both locking stretches, counted from there.
-    walls: [P; 2],
+    pub(super) walls: [P; 2],
     /// a1 − 1, with the spring; a3, a5 of the folded equation, and k̄l̄.
-    linear: P,
-    cubic: P,
-    quintic: P,
-    preload: P,
+    pub(super) linear: P,
+    pub(super) cubic: P,
+    pub(super) quintic: P,
+    pub(super) preload: P,
     has_charge: bool,
-}
-
-/// The elastic state at a stretch.
-#[derive(Clone, Copy)]
-pub(super) struct Powers<N> {
-    pub stretch: N,
-    pub square: N,
-    pub inverse: N,
-    /// λ⁻², λ⁻⁴, λ⁻⁵.
-    pub inverse_square: N,
-    pub inverse_fourth: N,
-    pub inverse_fifth: N,
-}
-
-impl<N: Number> Powers<N> {
-    #[inline(always)]
-    pub fn of(stretch: N) -> Powers<N> {
-        let inverse = stretch.same(1.0) / stretch;
-        let inverse_square = inverse * inverse;
-        let inverse_fourth = inverse_square * inverse_square;
-        Powers {
-            stretch,
-            square: stretch * stretch,
-            inverse,
-            inverse_square,
-            inverse_fourth,
-            inverse_fifth: inverse_fourth * inverse,
-        }
-    }
-}
-
-impl<P: Parameter> Permittivity<P> {
-    /// e and e' at a stretch.
-    #[inline(always)]
-    pub fn at<N: Number>(&self, stretch: N) -> [N; 2]
-    where
-        P: ParameterOf<N>,
-    {
-        let number = |value: f64| stretch.same(value);
-        let [k1, k2, k3] = self.terms;
-        let [k1, k2, k3] = [k1.lift(stretch), k2.lift(stretch), k3.lift(stretch)];
-        let x = stretch - number(1.0);
-        let value = k3.mul_add(x, k2).mul_add(x, k1).mul_add(x, number(1.0));
-        let slope = (number(3.0) * k3)
-            .mul_add(x, number(2.0) * k2)
-            .mul_add(x, k1);
-        [value, slope]
-    }
-
-    /// λ³e + ¼λ⁴e', the factor of the squared voltage in the force.
-    #[inline(always)]
-    pub fn pull<N: Number>(&self, stretch: N) -> N
-    where
-        P: ParameterOf<N>,
-    {
-        let cube = stretch * stretch * stretch;
-        if self.is_constant() {
-            return cube;
-        }
-        let [value, slope] = self.at(stretch);
-        cube * (stretch * slope).mul_add(stretch.same(0.25), value)
-    }
 }
 
 impl<'a, P: Parameter> LocalDevice<'a, P> {
@@ -147,47 +86,6 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
         [self.linear, self.cubic, self.quintic]
     }
 
-    /// The stretch at a position.
-    #[inline(always)]
-    pub fn stretch<N: Number>(&self, position: N) -> N {
-        position + position.same(self.origin)
-    }
-
-    /// 1 − I/J of a Gent material at a position.
-    #[inline(always)]
-    pub(super) fn gap<N: Number>(&self, locking: &Locking<P>, position: N) -> N
-    where
-        P: ParameterOf<N>,
-    {
-        let [largest, smallest] = self.walls.map(|wall| wall.lift(position));
-        locking.gap(
-            self.stretch(position),
-            largest - position,
-            position - smallest,
-        )
-    }
-
-    /// The elastic factor h at a position.
-    #[inline(always)]
-    fn stiffening<N: Number>(&self, position: N, square: N) -> N
-    where
-        P: ParameterOf<N>,
-    {
-        let one = position.same(1.0);
-        match &self.device.elasticity {
-            Elasticity::NeoHookean => one,
-            Elasticity::Gent(locking) => one / self.gap(locking, position),
-            Elasticity::Yeoh { second, third } => {
-                let number = |value: f64| position.same(value);
-                let i = invariant(square);
-                let [second, third] = [*second, *third].map(|factor| factor.lift(position));
-                (number(3.0) * third)
-                    .mul_add(i, number(2.0) * second)
-                    .mul_add(i, one)
-            }
-        }
-    }
-
     /// The state of the k-th branch that is present.
     #[inline(always)]
     pub(super) fn branch_state<T: Copy>(&self, internal: &[T; MOST_STATES], k: usize) -> T {
@@ -200,26 +98,18 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
     where
         P: ParameterOf<N>,
     {
+        let powers = Powers::of(self.stretch(stage.position));
+        self.voltage(load, stage, self.elastance(&powers))
+    }
+
+    #[inline(always)]
+    fn voltage<N: Number>(&self, load: &Load<N>, stage: &Stage<N>, elastance: N) -> N {
         let charge = match self.device.port.source {
             Source::Voltage if !self.has_charge => return load.source,
             Source::Charge => load.source,
             Source::Voltage | Source::Current => stage.internal[0],
         };
-        charge / self.capacitance(self.stretch(stage.position))
-    }
-
-    /// λ⁴e, the capacitance.
-    #[inline(always)]
-    pub fn capacitance<N: Number>(&self, stretch: N) -> N
-    where
-        P: ParameterOf<N>,
-    {
-        let square = stretch * stretch;
-        let fourth = square * square;
-        if self.device.permittivity.is_constant() {
-            return fourth;
-        }
-        fourth * self.device.permittivity.at(stretch)[0]
+        charge * elastance
     }
 
     /// The leakage conductance G, and V dG/dV.
@@ -251,41 +141,50 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
     where
         P: ParameterOf<N>,
     {
-        self.forces_at(load.prestress, self.membrane_voltage(load, stage), stage)
+        self.forces_in(load, &self.geometry_at(stage.position), stage)
+    }
+
+    /// [`LocalDevice::forces`] in this geometry.
+    #[inline(always)]
+    pub(super) fn forces_in<N: Number>(
+        &self,
+        load: &Load<N>,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> [N; 3]
+    where
+        P: ParameterOf<N>,
+    {
+        let voltage = self.voltage(load, stage, geometry.elastance);
+        self.forces_under(load.prestress, voltage, geometry, stage)
     }
 
     /// [`LocalDevice::forces`] under this voltage at the membrane.
     #[inline(always)]
-    fn forces_at<N: Number>(&self, prestress: N, voltage: N, stage: &Stage<N>) -> [N; 3]
+    fn forces_under<N: Number>(
+        &self,
+        prestress: N,
+        voltage: N,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> [N; 3]
     where
         P: ParameterOf<N>,
     {
-        let device = self.device;
-        let p = Powers::of(self.stretch(stage.position));
+        let (device, p) = (self.device, &geometry.powers);
         let number = |value: f64| p.stretch.same(value);
-        let lift = |parameter: P| parameter.lift(p.stretch);
         let inverse_sixth = p.inverse_fourth * p.inverse_square;
-        let mut elastic = p.stretch - p.inverse_fifth;
-        if !matches!(device.elasticity, Elasticity::NeoHookean) {
-            elastic = elastic * self.stiffening(stage.position, p.square);
-        }
-        let surface = p.stretch
-            * lift(self.quintic)
-                .mul_add(p.square, lift(self.cubic))
-                .mul_add(p.square, lift(self.linear));
-        let electric = device.permittivity.pull(p.stretch);
         let inertial = number(6.0) * inverse_sixth * p.inverse * stage.rate * stage.rate;
-        let mut force = inertial - elastic - surface
-            + (prestress + lift(self.preload))
-            + voltage * voltage * electric;
+        let mut force =
+            inertial - geometry.restoring + prestress + voltage * voltage * geometry.pull;
         for (k, branch) in device.present_branches().enumerate() {
             let g = self.branch_state(&stage.internal, k);
             let pull = p.stretch / g - g * g * p.inverse_fifth;
-            force = force - lift(branch.modulus) * branch.stiffening(p.square / g) * pull;
+            let modulus = branch.modulus.lift(p.stretch);
+            force = force - modulus * branch.stiffening(p.square / g) * pull;
         }
-        let inertia = number(2.0).mul_add(inverse_sixth, lift(device.sheet.aspect));
         let damping = device.damping.scaled([number(1.0), p.inverse_square]);
-        [force, inertia, damping]
+        [force, geometry.inertia, damping]
     }
 
     /// z' of the charge, where it is a state, and of the branches.
@@ -303,39 +202,73 @@ impl<'a, P: Parameter> LocalDevice<'a, P> {
             value: zero,
             relaxation: zero,
         }; MOST_STATES];
-        let p = Powers::of(self.stretch(stage.position));
-        if self.has_charge {
-            slopes[0] = self.charge_slope(load, stage, p.square);
-        }
-        for (k, branch) in self.device.present_branches().enumerate() {
-            let g = self.branch_state(&stage.internal, k);
-            slopes[k + usize::from(self.has_charge)] = branch.slope(g, &p);
+        let geometry = self.geometry_at(stage.position);
+        let states = usize::from(self.has_charge) + self.device.present_branches().count();
+        for (k, slope) in slopes.iter_mut().enumerate().take(states) {
+            *slope = self.first_order_of(k, load, &geometry, stage);
         }
         slopes
     }
 
+    /// z' of the k-th state.
     #[inline(always)]
-    fn charge_slope<N: Number>(&self, load: &Load<N>, stage: &Stage<N>, square: N) -> Slope<N>
+    pub(super) fn first_order_of<N: Number>(
+        &self,
+        k: usize,
+        load: &Load<N>,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N>
     where
         P: ParameterOf<N>,
     {
-        let number = |value: f64| square.same(value);
-        let one = number(1.0);
-        let capacitance = self.capacitance(self.stretch(stage.position));
-        let voltage = stage.internal[0] / capacitance;
-        let [conductance, steeper] = self.conductance(voltage, square);
+        if self.has_charge && k == 0 {
+            return self.charge_slope(load, geometry, stage);
+        }
+        // No closure, which would not be compiled for the SIMD level.
+        let mut place = k - usize::from(self.has_charge);
+        for branch in &self.device.branches {
+            if branch.is_present() {
+                if place == 0 {
+                    return branch.slope(stage.internal[k], &geometry.powers);
+                }
+                place -= 1;
+            }
+        }
+        let zero = stage.position.same(0.0);
+        Slope {
+            value: zero,
+            relaxation: zero,
+        }
+    }
+
+    #[inline(always)]
+    fn charge_slope<N: Number>(
+        &self,
+        load: &Load<N>,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N>
+    where
+        P: ParameterOf<N>,
+    {
+        let Geometry {
+            powers, elastance, ..
+        } = geometry;
+        let voltage = stage.internal[0] * *elastance;
+        let [conductance, steeper] = self.conductance(voltage, powers.square);
         let leak = voltage * conductance;
         let port = &self.device.port;
         if port.source == Source::Current {
             return Slope {
                 value: load.source - leak,
-                relaxation: (conductance + steeper) / capacitance,
+                relaxation: (conductance + steeper) * *elastance,
             };
         }
-        let series = (port.resistance.same(1.0) / port.resistance).lift(square);
+        let series = (port.resistance.same(1.0) / port.resistance).lift(powers.square);
         Slope {
             value: (load.source - voltage) * series - leak,
-            relaxation: (series + conductance + steeper) * (one / capacitance),
+            relaxation: (series + conductance + steeper) * *elastance,
         }
     }
 }
@@ -362,7 +295,8 @@ impl LocalDevice<'_> {
             rate: fixed(0.0),
             internal: stage.internal.map(fixed),
         };
-        let [force, inertia, _] = self.forces_at(fixed(load.prestress), held, &still);
+        let geometry = self.geometry_at(position);
+        let [force, inertia, _] = self.forces_under(fixed(load.prestress), held, &geometry, &still);
         (-force.slope() / inertia.term[0]).max(0.0).sqrt()
     }
 }

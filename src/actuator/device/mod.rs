@@ -11,6 +11,7 @@ pub mod damped;
 pub mod elasticity;
 pub mod energy;
 pub mod equation;
+pub mod geometry;
 pub mod motion;
 pub mod parameters;
 

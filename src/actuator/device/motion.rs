@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::damped::DampedMotion;
 use super::elasticity::Elasticity;
-use super::equation::{Load, LocalDevice, Powers};
+use super::equation::{Load, LocalDevice};
+use super::geometry::{Geometry, Powers};
 use super::parameters::{Device, Source};
 use crate::actuator::{Drive, Motion};
 use crate::arithmetic::double_double::DoubleDouble;
@@ -90,6 +91,14 @@ impl CoupledEquation for DeviceMotion {
         self.device.damping.is_none() && self.states() == 0
     }
 
+    /// Without a locking stretch.
+    fn is_regular(&self) -> bool {
+        let device = &self.device;
+        let mut branches = device.present_branches();
+        !matches!(device.elasticity, Elasticity::Gent(_))
+            && branches.all(|branch| branch.limit.is_infinite())
+    }
+
     fn awaits_event(&self) -> bool {
         self.device.breakdown.is_some()
     }
@@ -120,6 +129,7 @@ impl CoupledEquation for DeviceMotion {
 
 impl LocalCoupledEquation for LocalDevice<'_> {
     type Load<N: Number> = Load<N>;
+    type Geometry<N: Number> = Geometry<N>;
 
     #[inline(always)]
     fn load<N: Number>(&self, offset: N) -> Load<N> {
@@ -130,17 +140,46 @@ impl LocalCoupledEquation for LocalDevice<'_> {
     }
 
     #[inline(always)]
-    fn slopes<N: Number>(&self, load: Load<N>, stage: &Stage<N>) -> [Slope<N>; MOST_STATES] {
-        self.first_order(&load, stage)
+    fn harmonic(&self) -> Option<[f64; 2]> {
+        self.drive.harmonic()
     }
 
     #[inline(always)]
-    fn acceleration<N: Number>(&self, load: Load<N>, stage: &Stage<N>) -> Slope<N> {
-        let [force, inertia, damping] = self.forces(&load, stage);
-        let relaxation = damping / inertia;
+    fn load_with_sine<N: Number>(&self, offset: N, sine: N) -> Load<N> {
+        Load {
+            source: self.drive.voltage_with_sine(offset, sine),
+            prestress: self.drive.prestress(offset),
+        }
+    }
+
+    #[inline(always)]
+    fn geometry<N: Number>(&self, position: N) -> Geometry<N> {
+        self.geometry_at(position)
+    }
+
+    #[inline(always)]
+    fn slope<N: Number>(
+        &self,
+        k: usize,
+        load: Load<N>,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N> {
+        self.first_order_of(k, &load, geometry, stage)
+    }
+
+    #[inline(always)]
+    fn acceleration<N: Number>(
+        &self,
+        load: Load<N>,
+        geometry: &Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N> {
+        let [force, inertia, damping] = self.forces_in(&load, geometry, stage);
+        let inverse = inertia.same(1.0) / inertia;
         Slope {
-            value: force / inertia - relaxation * stage.rate,
-            relaxation,
+            value: (force - damping * stage.rate) * inverse,
+            relaxation: damping * inverse,
         }
     }
 
@@ -220,21 +259,12 @@ impl LocalCoupledEquation for LocalDevice<'_> {
     fn sizes(&self, stage: &Stage) -> Sizes {
         let position = self.size_of(stage.position);
         let frequency = self.natural_frequency(stage);
-        let mut internal = [1.0; MOST_STATES];
-        let mut charge = 0.0;
-        if self.device.has_charge_state() {
-            let source = self.drive.voltage_size();
-            let driven = match self.device.port.source {
-                Source::Voltage => source * self.capacitance(self.stretch(stage.position)),
-                _ => source / frequency,
-            };
-            charge = stage.internal[0].abs().max(driven).max(SMALL_CHARGE);
-            internal[0] = charge;
-        }
-        let first = usize::from(self.device.has_charge_state());
-        for place in 0..self.device.present_branches().count() {
-            internal[first + place] = stage.internal[first + place].abs();
-        }
+        let internal = self.state_sizes(stage, frequency);
+        let charge = if self.device.has_charge_state() {
+            internal[0]
+        } else {
+            0.0
+        };
         let energy = self.energy_size(stage, charge, frequency);
         let stretch = self.stretch(stage.position);
         let inertia = self.device.sheet.aspect + 2.0 * stretch.powi(-6);
@@ -245,6 +275,23 @@ impl LocalCoupledEquation for LocalDevice<'_> {
             integrals: energy,
             swing: (energy / inertia).sqrt() / frequency,
         }
+    }
+
+    fn state_sizes(&self, stage: &Stage, frequency: f64) -> [f64; MOST_STATES] {
+        let mut sizes = [1.0; MOST_STATES];
+        if self.device.has_charge_state() {
+            let source = self.drive.voltage_size();
+            let driven = match self.device.port.source {
+                Source::Voltage => source * self.capacitance(self.stretch(stage.position)),
+                _ => source / frequency,
+            };
+            sizes[0] = stage.internal[0].abs().max(driven).max(SMALL_CHARGE);
+        }
+        let first = usize::from(self.device.has_charge_state());
+        for place in 0..self.device.present_branches().count() {
+            sizes[first + place] = stage.internal[first + place].abs();
+        }
+        sizes
     }
 
     /// The stretch, or the distance to a locking stretch where that is less.

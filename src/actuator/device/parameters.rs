@@ -171,9 +171,15 @@ impl<P: Parameter> Device<P> {
 
     /// The branches that are present.
     pub fn present_branches(&self) -> impl Iterator<Item = &Branch<P>> {
-        self.branches
-            .iter()
-            .filter(|branch| branch.modulus.value() > 0.0)
+        self.branches.iter().filter(|branch| branch.is_present())
+    }
+}
+
+impl<P: Parameter> Branch<P> {
+    /// Whether it takes part.
+    #[inline(always)]
+    pub(super) fn is_present(&self) -> bool {
+        self.modulus.value() > 0.0
     }
 }
 

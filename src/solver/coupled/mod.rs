@@ -47,13 +47,23 @@ pub struct FullState {
 
 /// Position, rate and first-order states at one time, or at lanes of times.
 #[derive(Clone, Copy, Debug)]
-pub struct Stage<N = f64> {
+pub struct Stage<N = f64, const K: usize = MOST_STATES> {
     /// x, counted from the origin of the position.
     pub position: N,
     /// x'.
     pub rate: N,
     /// z.
-    pub internal: [N; MOST_STATES],
+    pub internal: [N; K],
+}
+
+impl<const K: usize> Stage<f64, K> {
+    /// Position and rate.
+    pub fn motion(&self) -> State {
+        State {
+            position: self.position,
+            rate: self.rate,
+        }
+    }
 }
 
 /// The derivative y' of a state, and how fast the state relaxes.
@@ -106,6 +116,11 @@ pub trait CoupledEquation {
         false
     }
 
+    /// Whether f and z' are smooth wherever the position is positive.
+    fn is_regular(&self) -> bool {
+        false
+    }
+
     /// Whether an event besides the limits of the position is awaited.
     fn awaits_event(&self) -> bool {
         false
@@ -122,15 +137,56 @@ pub trait CoupledEquation {
 pub trait LocalCoupledEquation {
     /// What the derivatives need to know of the time.
     type Load<N: Number>: Copy;
+    /// What they need to know of the position.
+    type Geometry<N: Number>: Copy;
 
     /// The load at `offset` after the origin of time.
     fn load<N: Number>(&self, offset: N) -> Self::Load<N>;
 
-    /// z' of the first-order states.
-    fn slopes<N: Number>(&self, load: Self::Load<N>, stage: &Stage<N>) -> [Slope<N>; MOST_STATES];
+    /// The part of the load that alternates: its angular frequency, and its angle at the origin
+    /// of time. Nothing where there is none.
+    fn harmonic(&self) -> Option<[f64; 2]>;
+
+    /// The load at `offset`, where the sine of its alternating part is known.
+    fn load_with_sine<N: Number>(&self, offset: N, sine: N) -> Self::Load<N>;
+
+    /// What the derivatives need to know of `position`: computed once for all of them.
+    fn geometry<N: Number>(&self, position: N) -> Self::Geometry<N>;
+
+    /// z' of the k-th first-order state.
+    fn slope<N: Number>(
+        &self,
+        k: usize,
+        load: Self::Load<N>,
+        geometry: &Self::Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N>;
 
     /// x''.
-    fn acceleration<N: Number>(&self, load: Self::Load<N>, stage: &Stage<N>) -> Slope<N>;
+    fn acceleration<N: Number>(
+        &self,
+        load: Self::Load<N>,
+        geometry: &Self::Geometry<N>,
+        stage: &Stage<N>,
+    ) -> Slope<N>;
+
+    /// z' of so many first-order states, and x''.
+    fn derivatives(
+        &self,
+        states: usize,
+        load: Self::Load<f64>,
+        stage: &Stage,
+    ) -> ([Slope; MOST_STATES], Slope) {
+        let geometry = self.geometry(stage.position);
+        let mut slopes = [Slope {
+            value: 0.0,
+            relaxation: 0.0,
+        }; MOST_STATES];
+        for (k, slope) in slopes.iter_mut().enumerate().take(states) {
+            *slope = self.slope(k, load, &geometry, stage);
+        }
+        (slopes, self.acceleration(load, &geometry, stage))
+    }
 
     /// The derivatives of the integrals at `offset`, where z' has these `slopes`.
     fn powers(
@@ -151,11 +207,20 @@ pub trait LocalCoupledEquation {
     /// The fastest angular frequency with which the load alternates, 0 where it does not.
     fn load_frequency(&self) -> f64;
 
+    /// The longest step in whose 16 nodes the load is seen as it is, two of its periods:
+    /// one that alternates faster would be mistaken for a slow one.
+    fn longest_substep(&self) -> f64 {
+        4.0 * std::f64::consts::PI / self.load_frequency()
+    }
+
     /// How fast the motion from here changes by itself, without what relaxes, roughly.
     fn natural_frequency(&self, stage: &Stage) -> f64;
 
     /// Typical sizes around this stage.
     fn sizes(&self, stage: &Stage) -> Sizes;
+
+    /// Those of the first-order states, where the motion has this natural frequency.
+    fn state_sizes(&self, stage: &Stage, frequency: f64) -> [f64; MOST_STATES];
 
     /// The typical size of a position alone.
     fn size_of(&self, position: f64) -> f64;

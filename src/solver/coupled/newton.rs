@@ -84,9 +84,9 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         whole: bool,
     ) -> Result<(), Diverged> {
         let fill = |value: f64| Nodes::<S, R>::fill(simd, value);
-        let here = local.slopes(load, at);
+        let geometry = local.geometry(at.position);
         for k in 0..states {
-            let relaxation = here[k].relaxation * fill(half);
+            let relaxation = local.slope(k, load, &geometry, at).relaxation * fill(half);
             let inverse = &mut self.internal[k];
             for j in 0..N {
                 let once = Nodes::load(simd, &rule.once[j]);
@@ -97,14 +97,17 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         if !whole {
             return Ok(());
         }
-        let force = local.acceleration(load, at);
+        let force = local.acceleration(load, &geometry, at);
         let [aside, per_aside] = difference(sizes.position);
-        let moved = Stage {
+        let moved_aside = Stage {
             position: at.position + fill(aside),
             ..*at
         };
-        let slopes_aside = local.slopes(load, &moved);
-        let steepness = local.acceleration(load, &moved).value - force.value;
+        let geometry_aside = local.geometry(moved_aside.position);
+        let steepness = local
+            .acceleration(load, &geometry_aside, &moved_aside)
+            .value
+            - force.value;
         let stiffness = fill(0.0) - steepness * fill(per_aside * half * half);
         let damping = force.relaxation * fill(half);
         let mut motion = [[0.0; N]; N];
@@ -115,11 +118,13 @@ impl<S: Simd, const R: usize, const N: usize> Newton<S, R, N> {
         }
         let mut response = [fill(0.0); MOST_STATES];
         for k in 0..states {
-            response[k] = (slopes_aside[k].value - here[k].value) * fill(per_aside);
+            let here = local.slope(k, load, &geometry, at).value;
+            let there = local.slope(k, load, &geometry_aside, &moved_aside).value;
+            response[k] = (there - here) * fill(per_aside);
             let [more, per_more] = difference(sizes.internal[k]);
             let mut moved = *at;
             moved.internal[k] = moved.internal[k] + fill(more);
-            let push = local.acceleration(load, &moved).value - force.value;
+            let push = local.acceleration(load, &geometry, &moved).value - force.value;
             let push = push * fill(per_more * half * half * half);
             for j in 0..N {
                 let answer = (response[k] * Nodes::load(simd, &rule.twice[j])).store();

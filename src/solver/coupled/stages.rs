@@ -212,10 +212,7 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
     let State { position, rate } = start.motion;
     let drift = place * fill(half * rate);
 
-    let first_stage = start.stage();
-    let first_load = local.load(0.0);
-    let first_slopes = local.slopes(first_load, &first_stage);
-    let first = local.acceleration(first_load, &first_stage);
+    let (first_slopes, first) = local.derivatives(states, local.load(0.0), &start.stage());
     let mut internal = [StageValues::<S, R, N>::constant(simd); MOST_STATES];
     for k in 0..states {
         let series = before.map(|last| (last.half, &last.internal[k]));
@@ -253,19 +250,17 @@ fn by<S: Simd, L: LocalCoupledEquation, const R: usize, const N: usize>(
             *work += if whole { NEWTON_WORK } else { STATES_WORK };
         }
         let mut change = 0.0_f64;
-        if states > 0 {
-            let slopes = local.slopes(load, &at);
-            for k in 0..states {
-                let mut new = slopes[k].value;
-                if let Some(newton) = &newton {
-                    new = internal[k].corrected(simd, &newton.internal[k], new);
-                }
-                let moved = internal[k].take(simd, rule, half, new);
-                change = later(change, moved / sizes.internal[k]);
-                at.internal[k] = fill(start.internal[k]) + internal[k].gain;
+        let geometry = local.geometry(at.position);
+        for k in 0..states {
+            let mut new = local.slope(k, load, &geometry, &at).value;
+            if let Some(newton) = &newton {
+                new = internal[k].corrected(simd, &newton.internal[k], new);
             }
+            let moved = internal[k].take(simd, rule, half, new);
+            change = later(change, moved / sizes.internal[k]);
+            at.internal[k] = fill(start.internal[k]) + internal[k].gain;
         }
-        let mut new = local.acceleration(load, &at).value;
+        let mut new = local.acceleration(load, &geometry, &at).value;
         let whole = newton.as_ref().and_then(|newton| newton.whole.as_ref());
         if let Some(whole) = whole {
             new = motion.corrected(simd, &whole.motion, new);

@@ -15,19 +15,20 @@ use crate::arithmetic::number::Number;
 /// A matrix by rows.
 type Matrix = [[f64; NODES]; NODES];
 
-/// Makes the matrices [A, B] to [W·A, B·W], where W = (1 − slope·A)⁻¹. The slope begins to act at one node after the
-/// other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0.
+/// Makes the matrices [A, B, …] to [W·A, B·W, …], where W = (1 − slope·A)⁻¹. The slope begins to act at one node after
+/// the other, each time by a matrix of rank one (Sherman and Morrison); no pivoting is needed for a slope ≤ 0.
 #[inline(always)]
-fn include_slope<S: Simd>(simd: S, slope: f64, matrices: &mut [Matrix; 2]) {
+fn include_slope<S: Simd, const M: usize>(simd: S, slope: f64, matrices: &mut [Matrix; M]) {
     for p in rolled::<NODES>() {
         let own = &matrices[0][p];
         let own = scaled(pair(simd, own), slope / (1.0 - slope * own[p]));
-        let rows = matrices.as_flattened_mut();
-        for r in rolled::<{ 2 * NODES }>() {
-            let row = &mut rows[r];
-            let factor = f64x4::splat(simd, row[p]);
-            let [low, high] = pair(simd, row);
-            *row = unpair([own[0].mul_add(factor, low), own[1].mul_add(factor, high)]);
+        for matrix in matrices.iter_mut() {
+            for r in rolled::<NODES>() {
+                let row = &mut matrix[r];
+                let factor = f64x4::splat(simd, row[p]);
+                let [low, high] = pair(simd, row);
+                *row = unpair([own[0].mul_add(factor, low), own[1].mul_add(factor, high)]);
+            }
         }
     }
 }
@@ -88,4 +89,17 @@ fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
         (end + load(simd, &plain.end[j])).store_slice(&mut matrices.end[j]);
     }
     end_drift.store_slice(&mut matrices.end_drift);
+}
+
+/// Makes it W·B for steps of half this length, where B integrates once and W = (1 + half·rate·B)⁻¹.
+#[inline(never)]
+pub fn with_relaxation(level: Level, half: f64, rate: f64, matrix: &mut Diagonals) {
+    dispatch!(level, simd => {
+        let mut once = [rows(&TABLE.plain.once)];
+        include_slope(simd, -half * rate, &mut once);
+        for row in &mut once[0] {
+            *row = unpair(scaled(pair(simd, row), half));
+        }
+        *matrix = diagonals(&once[0]);
+    });
 }

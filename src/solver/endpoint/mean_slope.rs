@@ -4,8 +4,9 @@ use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 use serde::{Deserialize, Serialize};
 
 use super::plan::{NODES, pair};
+use super::system::{LocalSystem, in_lanes};
 use crate::arithmetic::lanes::Lanes;
-use crate::solver::LocalEquation;
+use crate::solver::coupled::Stage;
 
 /// States over which it is averaged.
 const AVERAGED: f64 = 16.0;
@@ -45,18 +46,18 @@ impl MeanSlope {
     /// Takes these positions too, at the origin of time, where the alternating part of the load has this
     /// sine; in a function of its own, since it is long and not hot.
     #[inline(never)]
-    pub fn include<L: LocalEquation>(
+    pub fn include<const K: usize, L: LocalSystem<K>>(
         &mut self,
         level: Level,
         local: &L,
         sine: f64,
-        rate: f64,
+        state: &Stage<f64, K>,
         positions: &[f64; NODES],
     ) {
         let slope = dispatch!(level, simd => {
             let load = local.load_with_sine(f64x4::splat(simd, 0.0), f64x4::splat(simd, sine));
             let [low, high] = pair(simd, positions);
-            let sum = slope(simd, local, load, rate, low) + slope(simd, local, load, rate, high);
+            let sum = slope(simd, local, load, state, low) + slope(simd, local, load, state, high);
             Lanes::<_, 4>::store(sum).iter().sum::<f64>() * 0.125
         });
         self.states = (self.states + 1.0).min(AVERAGED);
@@ -72,18 +73,20 @@ impl MeanSlope {
     }
 }
 
-/// ∂f/∂x under this load at these positions; its last digits do not matter.
+/// ∂f/∂x under this load at these positions, the rest as in `state`; its last digits do not matter.
 #[inline(always)]
-fn slope<S: Simd, L: LocalEquation>(
+fn slope<S: Simd, const K: usize, L: LocalSystem<K>>(
     simd: S,
     local: &L,
     load: L::Load<f64x4<S>>,
-    rate: f64,
+    state: &Stage<f64, K>,
     position: f64x4<S>,
 ) -> f64x4<S> {
-    let rate = f64x4::splat(simd, rate);
+    let mut at = in_lanes(simd, state);
     let shift = position * f64x4::splat(simd, 1e-4);
-    let above = local.acceleration(load, position + shift, rate);
-    let below = local.acceleration(load, position - shift, rate);
+    at.position = position + shift;
+    let above = local.acceleration(load, &local.geometry(at.position), &at);
+    at.position = position - shift;
+    let below = local.acceleration(load, &local.geometry(at.position), &at);
     (above - below) / (shift + shift)
 }

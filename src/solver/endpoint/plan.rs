@@ -216,11 +216,11 @@ impl Plan {
         shifted(pair(simd, &self.offset), passed)
     }
 
-    /// g continued from the step before, which has the same length and slope, and has moved
-    /// the position by `moved`.
+    /// g continued from the step before, which has the same length and slope, plus `shift`: the slope times by how
+    /// much that step has moved.
     #[inline(always)]
-    pub fn ahead<S: Simd>(&self, simd: S, g: Pair<S>, moved: f64) -> Pair<S> {
-        self.bell.ahead(simd, g, self.slope * moved)
+    pub fn ahead<S: Simd>(&self, simd: S, g: Pair<S>, shift: f64) -> Pair<S> {
+        self.bell.ahead(simd, g, shift)
     }
 
     /// g at the nodes, from its values at the nodes of a step before of half the length `before` with half²·J
@@ -228,14 +228,6 @@ impl Plan {
     #[inline(always)]
     pub fn resampled<S: Simd>(&self, simd: S, g: Pair<S>, before: f64, product: f64) -> Pair<S> {
         resampled(simd, g, before, product, pair(simd, &self.offset))
-    }
-
-    /// g at the end.
-    #[inline(always)]
-    pub fn last<S: Simd>(&self, simd: S, g: Pair<S>) -> f64 {
-        let [low, high] = pair(simd, &TABLE.last);
-        let sums = Lanes::<S, 4>::store(high.mul_add(g[1], low * g[0]));
-        (sums[0] + sums[1]) + (sums[2] + sums[3])
     }
 
     /// What x'_0 alone does to displacement and rate at the nodes.
@@ -279,6 +271,14 @@ impl Plan {
         ((sums[0] + sums[1]) + (sums[2] + sums[3])).store_slice(&mut ends);
         ends
     }
+}
+
+/// g at the end of a step.
+#[inline(always)]
+pub fn last<S: Simd>(simd: S, g: Pair<S>) -> f64 {
+    let [low, high] = pair(simd, &TABLE.last);
+    let sums = Lanes::<S, 4>::store(high.mul_add(g[1], low * g[0]));
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
 /// factor · values.

@@ -1,18 +1,18 @@
 //! A way to go, and how far it was gone.
 
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::solver::State;
+use crate::solver::coupled::Stage;
 use crate::solver::step_control::StepControl;
 
 /// A way to go.
 #[derive(Clone, Copy, Debug)]
-pub struct Way {
+pub struct Way<const K: usize> {
     /// Time of the model at its begin.
     pub begin: DoubleDouble,
     /// The present, counted from there.
     pub now: DoubleDouble,
     /// Present state.
-    pub state: State,
+    pub state: Stage<f64, K>,
     /// The time to be reached, counted from there.
     pub target: DoubleDouble,
     /// Positions between which steps may go.
@@ -23,7 +23,7 @@ pub struct Way {
     pub budget: u32,
 }
 
-impl Way {
+impl<const K: usize> Way<K> {
     /// Present time of the model.
     #[inline]
     pub fn time(&self) -> DoubleDouble {

@@ -20,6 +20,7 @@ use super::position_origin::PositionOrigin;
 use super::step_control::StepControl;
 use crate::arithmetic::double_double::DoubleDouble;
 
+mod endpoint_only;
 mod events;
 mod mode;
 mod validation;

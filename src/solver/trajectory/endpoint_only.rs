@@ -3,6 +3,7 @@
 use super::{FEW, Trajectory};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::Equation;
+use crate::solver::coupled::Stage;
 use crate::solver::endpoint::{End, Way};
 use crate::solver::integrator::Mode;
 
@@ -57,7 +58,11 @@ impl Trajectory {
         let mut way = Way {
             begin: *clock,
             now: DoubleDouble::ZERO,
-            state: self.start.state,
+            state: Stage {
+                position: self.start.state.position,
+                rate: self.start.state.rate,
+                internal: [],
+            },
             target: DoubleDouble::new(step),
             bounds: self.bounds(),
             control: self.step_control(false),
@@ -66,42 +71,23 @@ impl Trajectory {
         let level = self.settings.level;
         let end = self.method.endpoint.go(level, equation, &mut way);
         if end == End::Reached {
-            self.start.state = way.state;
+            self.start.state = way.state.motion();
         } else {
             self.method.endpoint.restart();
         }
         end
     }
 
-    /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
-    /// the origin there. Returns by how much, and whether the next such step would meet no limit and no
-    /// extreme.
-    pub(super) fn go_to_end<E: Equation>(
+    /// Follows the motion from the end of the last step toward `target` (see [`crate::solver::integrator::Integrator`]).
+    pub(super) fn go_to_end_by_steps<E: Equation>(
         &mut self,
         equation: &E,
         target: DoubleDouble,
         budget: &mut u32,
     ) -> (DoubleDouble, bool) {
-        let begin = self.history.end();
-        self.arrive(begin);
-        let mut way = Way {
-            begin: self.start.time.add(begin),
-            now: DoubleDouble::ZERO,
-            state: self.state(),
-            target: target.sub(begin),
-            bounds: self.bounds(),
-            control: self.step_control(false),
-            budget: *budget,
-        };
-        let level = self.settings.level;
-        let end = self.method.endpoint.go(level, equation, &mut way);
-        *budget = way.budget;
-        let shift = if end == End::Reached {
-            target
-        } else {
-            begin.add(way.now)
-        };
-        self.stand_at(way.time(), way.state);
-        (shift, end != End::Blocked)
+        let (level, control) = (self.settings.level, self.step_control(false));
+        self.go_to_end(target, &mut [], control, budget, |steps, way| {
+            steps.endpoint.go(level, equation, way)
+        })
     }
 }

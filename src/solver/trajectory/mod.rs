@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::collocation::{Guess, Substep, solve_by_16};
 use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps};
-use super::extremes::Extremes;
 use super::integrator::{Integrator, Method, Mode};
 use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
@@ -60,7 +59,7 @@ pub struct Steps {
     /// Longer short steps are not tried: one was refused of late.
     longest_short_step: Option<f64>,
     /// Where communication points lie far apart.
-    endpoint: EndpointSteps,
+    endpoint: EndpointSteps<0>,
 }
 
 impl Method for Steps {
@@ -175,7 +174,7 @@ impl Trajectory {
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
             let (shift, free) = if unobstructed && motion.takes_endpoint_steps(equation, rest) {
-                motion.go_to_end(equation, target, budget)
+                motion.go_to_end_by_steps(equation, target, budget)
             } else {
                 *budget -= 1;
                 (motion.extend(equation, rest)?, true)
@@ -233,15 +232,6 @@ impl Trajectory {
             self.settings.control.repeated()
         } else {
             self.settings.control
-        }
-    }
-
-    /// The positions between which nothing happens.
-    fn bounds(&self) -> (f64, f64) {
-        let Limits { lower, upper } = self.settings.limits;
-        match self.extremes() {
-            Some(Extremes { lowest, highest }) => (lower.max(lowest), upper.min(highest)),
-            None => (lower, upper),
         }
     }
 

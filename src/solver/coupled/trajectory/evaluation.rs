@@ -18,7 +18,7 @@ impl Trajectory {
     }
 
     /// The present derivatives of the first-order states, from the polynomials: where a state
-    /// relaxes fast, its equation would lose their digits. Nothing before the first step.
+    /// relaxes fast, its equation would lose their digits. Nothing where no step is kept.
     pub fn slopes(&self) -> Option<[f64; MOST_STATES]> {
         let polynomials = self.method.polynomials.as_ref()?;
         Some(polynomials.slopes(match self.present() {
@@ -73,6 +73,7 @@ impl Method for Carried {
                 .polynomials
                 .as_ref()
                 .is_none_or(|own| leads(own, motion))
+            && self.endpoint.are_valid()
             && finite(&motion.internal())
             && finite(&motion.integrals())
     }

@@ -139,9 +139,7 @@ impl Trajectory {
             sizes.integrals = sizes.integrals.max(sum.abs());
         }
         let scale = 1.0 / local.natural_frequency(&stage);
-        let load = local.load(0.0);
-        let slopes = local.slopes(load, &stage);
-        let force = local.acceleration(load, &stage);
+        let (slopes, force) = local.derivatives(demands.states, local.load(0.0), &stage);
         let slopes = &slopes[..demands.states];
         let relaxations = slopes.iter().map(|slope| slope.relaxation);
         let relaxation = relaxations.fold(0.0, f64::max);
@@ -150,9 +148,8 @@ impl Trajectory {
         if fresh {
             free = free.min(self.transient(force, slopes, &sizes, demands.control));
         }
-        // Two periods of the load, or it would be mistaken for a slow one.
         let nodes = if demands.few { 0.5 } else { 1.0 };
-        let seen = nodes * 4.0 * std::f64::consts::PI / local.load_frequency();
+        let seen = nodes * local.longest_substep();
         let most = most.min(seen);
         let shortest = (SHORTEST_TRANSIENT * scale).min(0.5 * most);
         let before = self.slopes_of_last_step(fresh);
@@ -273,9 +270,9 @@ impl Trajectory {
 
 /// Whether nothing changes any more.
 fn stands<L: LocalCoupledEquation>(local: &L, start: &FullState, states: usize) -> bool {
-    let (stage, load) = (start.stage(), local.load(0.0));
-    let slopes = local.slopes(load, &stage);
+    let stage = start.stage();
+    let (slopes, force) = local.derivatives(states, local.load(0.0), &stage);
     stage.rate == 0.0
-        && local.acceleration(load, &stage).value == 0.0
+        && force.value == 0.0
         && slopes[..states].iter().all(|slope| slope.value == 0.0)
 }

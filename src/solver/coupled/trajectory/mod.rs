@@ -6,11 +6,13 @@ use super::polynomials::Polynomials;
 use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::dense_output::History;
+use crate::solver::endpoint::EndpointSteps;
 use crate::solver::integrator::{Integrator, Mode};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
 use crate::solver::outcome::Progress as PlainProgress;
 
+mod endpoint_only;
 mod evaluation;
 mod events;
 mod extension;
@@ -34,7 +36,7 @@ pub enum Event {
 pub type Progress = PlainProgress<Event>;
 
 /// What a coupled system carries along beside position and rate.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Carried {
     /// First-order states and integrals at the start.
     internal: [f64; MOST_STATES],
@@ -45,6 +47,8 @@ pub struct Carried {
     slopes_before: Option<(f64, [f64; MOST_STATES])>,
     /// Whether the margin of the equation is still awaited.
     awaits_margin: bool,
+    /// Where communication points lie far apart.
+    endpoint: EndpointSteps<MOST_STATES>,
 }
 
 /// A motion of a coupled system that is followed forward in time.
@@ -54,17 +58,19 @@ impl Trajectory {
     /// A motion from `start`, followed with a relative `tolerance` of every state
     /// between the `limits` of the position. The position is counted from 0.
     pub fn new(start: FullState, limits: Limits, tolerance: f64) -> Trajectory {
-        Trajectory::within(History::empty(), start, limits, tolerance)
+        let endpoint = EndpointSteps::none();
+        Trajectory::within(History::empty(), endpoint, start, limits, tolerance)
     }
 
     /// Makes it a new motion, see [`Trajectory::new`], in the memory of the one that it was.
     pub fn begin_anew(&mut self, start: FullState, limits: Limits, tolerance: f64) {
-        let history = self.history.take();
-        *self = Trajectory::within(history, start, limits, tolerance);
+        let (history, endpoint) = (self.history.take(), self.method.endpoint.anew());
+        *self = Trajectory::within(history, endpoint, start, limits, tolerance);
     }
 
     fn within(
         history: History<DoubleDouble>,
+        endpoint: EndpointSteps<MOST_STATES>,
         start: FullState,
         limits: Limits,
         tolerance: f64,
@@ -75,6 +81,7 @@ impl Trajectory {
             polynomials: None,
             slopes_before: None,
             awaits_margin: true,
+            endpoint,
         };
         Trajectory::with_method(history, carried, start.motion, limits, tolerance)
     }
@@ -96,14 +103,14 @@ impl Trajectory {
     /// Starts anew from the present state: the equation has changed.
     pub fn restart(&mut self) {
         if !self.history.is_empty() {
-            self.method = Carried {
-                internal: self.internal(),
-                integrals: self.integrals(),
-                polynomials: None,
-                slopes_before: Some(self.slopes_at_present()),
-                ..self.method
-            };
+            let (internal, integrals) = (self.internal(), self.integrals());
+            let slopes = self.slopes_at_present();
+            let carried = &mut self.method;
+            (carried.internal, carried.integrals) = (internal, integrals);
+            carried.polynomials = None;
+            carried.slopes_before = Some(slopes);
         }
+        self.method.endpoint.restart();
         self.start_from_present();
     }
 
@@ -158,9 +165,22 @@ impl Trajectory {
             } else {
                 0
             };
+        // Whether the next endpoint-only step would meet no limit and no extreme.
+        let mut unobstructed = true;
         self.advance_by_steps(clock, step, |motion, target, budget| {
+            let rest = target.since(motion.history.end());
             let mut done = beside;
-            let shift = motion.extend(equation, target.since(motion.history.end()), &mut done);
+            // WebAssembly does without endpoint-only steps, which would take minutes to compile.
+            let shift = if !cfg!(target_arch = "wasm32")
+                && unobstructed
+                && motion.takes_endpoint_steps(equation, rest)
+            {
+                let (shift, free) = motion.go_to_end_by_steps(equation, target, *budget, &mut done);
+                unobstructed = free;
+                Ok(shift)
+            } else {
+                motion.extend(equation, rest, &mut done)
+            };
             *work = work.saturating_sub(done);
             *budget = budget.saturating_sub(done).min(*work);
             shift

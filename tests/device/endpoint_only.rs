@@ -1,0 +1,96 @@
+//! Steps of which only the end is asked for, with first-order states.
+
+use crate::balance::{device, off_or};
+use crate::scene::{Scene, follow, number, read, start};
+use dielectric_elastomer_actuator::actuator::Drive;
+use dielectric_elastomer_actuator::actuator::device::{DeviceMotion, Source};
+use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
+use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
+use dielectric_elastomer_actuator::solver::coupled::Progress;
+use proptest::prelude::*;
+
+/// Long communication steps keep no polynomial, short ones and stiff systems do.
+#[test]
+fn long_steps_of_what_is_not_stiff_keep_no_dense_output() {
+    for (name, step, dense) in [
+        ("B_rc_step", f64::INFINITY, false),
+        ("B_rc_step", 7.3, true),
+        ("F_sls_creep_vhb", f64::INFINITY, false),
+        ("own_current", f64::INFINITY, false),
+        ("own_stiff_rc", f64::INFINITY, true),
+        ("own_overdamped", f64::INFINITY, true),
+        ("G2_gent_sylgard", f64::INFINITY, true),
+    ] {
+        let file = read(name);
+        let scene = Scene::of(&file);
+        let motion = scene.motion(false);
+        let mut trajectory = start(&motion, scene.charge, 1e-9);
+        let row = &file["rows"].as_array().expect("rows")[2];
+        let time = scene.scales().time(DoubleDouble::new(number(&row["t_s"])));
+        follow(&mut trajectory, &motion, time, step);
+        assert_eq!(trajectory.slopes().is_some(), dense, "{name}, {step}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 1000,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// Where energies are summed up, steps have dense output: the motion is the same.
+    #[test]
+    fn a_random_motion_does_not_depend_on_what_is_asked_for(
+        device in device(),
+        inputs in prop::collection::vec(
+            (-0.3..0.3, -0.1..0.1, -0.2..0.2, 0.05..3.0, off_or(0.05..0.2), 0.1..2.0),
+            1..5,
+        ),
+    ) {
+        let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
+        let motion = |records_energy: bool| DeviceMotion {
+            device,
+            drive: Drive::constant(0.0, 0.0),
+            records_energy,
+        };
+        let unit = if device.port.source == Source::Current { 0.3 / period } else { 1.0 };
+        let mut both = [motion(false), motion(true)].map(|motion| {
+            let trajectory = start(&motion, 0.0, 1e-11);
+            (motion, trajectory)
+        });
+        for (source, slope, prestress, periods, amplitude, frequency) in inputs {
+            let mut voltage = Polynomial::constant(unit * source);
+            voltage.set_derivative(1, unit * slope / period);
+            for (motion, trajectory) in &mut both {
+                motion.drive = Drive {
+                    since: trajectory.clock,
+                    lead: 0.0,
+                    voltage,
+                    prestress: Polynomial::constant(prestress),
+                    harmonic: Harmonic {
+                        amplitude: unit * amplitude,
+                        frequency: frequency / period,
+                        phase: 0.3,
+                    },
+                };
+                trajectory.restart();
+            }
+            for _ in 0..5 {
+                let [ends, dense] = &mut both;
+                let step = periods * period;
+                let progress = [ends, dense].map(|(motion, trajectory)| trajectory.advance(motion, step));
+                if progress.iter().any(|progress| *progress != Ok(Progress::Whole)) {
+                    return Ok(());
+                }
+                let [(_, ends), (_, dense)] = &both;
+                let position = (ends.position() - dense.position()).abs() / dense.position();
+                let rate = (ends.rate() - dense.rate()).abs() * period / dense.position();
+                prop_assert!(position.max(rate) < 1e-8, "{position:e}, {rate:e}");
+                for (one, other) in ends.internal().iter().zip(dense.internal()) {
+                    prop_assert!((one - other).abs() < 1e-8 * other.abs().max(1.0), "{one}, {other}");
+                }
+            }
+        }
+    }
+}
