@@ -99,7 +99,7 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test $(CHECKS) lint-all audit bless \
+.PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test install-tests $(CHECKS) lint-all audit bless \
 test-platforms test-mosaik stress soak \
 fuzz bench bench-device env clean
 
@@ -180,13 +180,17 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	printf '\n==> examples/%s.py\n' $$example; \
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
-# Everything is installed before the two lines begin: they would install it twice at once.
-test: $(INSTALLED) $(NODE_INSTALLED) $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED) \
-$(RELEASE_INSTALLED) $(PAGE_TESTS_INSTALLED)
+# While the FMU is packed, what the tests need is installed; then the checks of the sources run beside the packing.
+test: $(INSTALLED) $(NODE_INSTALLED)
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
-	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; $(call run_checks,$(CHECKS_OF_THE_PACKED)); } & \
-	$(call run_checks,$(CHECKS_OF_THE_SOURCES)); wait
+	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; } & packing=$$!; \
+	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
+	{ $(call run_checks,$(CHECKS_OF_THE_SOURCES)); } & \
+	wait $$packing; $(call run_checks,$(CHECKS_OF_THE_PACKED)); wait
 	@$(PYTHON) tests/summary.py $(REPORTS)
+
+install-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED) $(RELEASE_INSTALLED) \
+$(PAGE_TESTS_INSTALLED)
 
 format: $(TESTS_INSTALLED)
 	$(call heading,Format)

@@ -18,8 +18,7 @@ fn long_steps_of_what_is_not_stiff_keep_no_dense_output() {
         ("F_sls_creep_vhb", f64::INFINITY, false),
         ("own_current", f64::INFINITY, false),
         ("own_stiff_rc", f64::INFINITY, true),
-        ("own_overdamped", f64::INFINITY, true),
-        ("G2_gent_sylgard", f64::INFINITY, true),
+        ("own_everything", f64::INFINITY, true),
     ] {
         let file = read(name);
         let scene = Scene::of(&file);

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::collocation::{Guess, Substep, solve_by_16};
 use super::dense_output::{History, Segment};
 use super::endpoint::{End, EndpointSteps};
-use super::integrator::{Integrator, Method, Mode};
+use super::integrator::{Integrator, Method, Mode, SKIPS_DENSE_OUTPUT};
 use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
@@ -159,10 +159,15 @@ impl Trajectory {
         // Whether the next endpoint-only step would meet no limit and no extreme.
         let mut unobstructed = true;
         let first = self.restarts.at_every_step();
-        let mut there = first
+        let mut there = SKIPS_DENSE_OUTPUT
+            && first
             && self.method.takes_endpoint_steps
             && self.takes_short_step(equation, clock, step);
-        if !there && self.may_go_straight(step) && self.takes_endpoint_steps(equation, step) {
+        if SKIPS_DENSE_OUTPUT
+            && !there
+            && self.may_go_straight(step)
+            && self.takes_endpoint_steps(equation, step)
+        {
             let end = self.go_straight_to_end(equation, clock, step);
             there = end == End::Reached;
             unobstructed = end != End::Blocked;
@@ -173,7 +178,10 @@ impl Trajectory {
         }
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
-            let (shift, free) = if unobstructed && motion.takes_endpoint_steps(equation, rest) {
+            let (shift, free) = if SKIPS_DENSE_OUTPUT
+                && unobstructed
+                && motion.takes_endpoint_steps(equation, rest)
+            {
                 motion.go_to_end_by_steps(equation, target, budget)
             } else {
                 *budget -= 1;

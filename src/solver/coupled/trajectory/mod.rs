@@ -7,7 +7,7 @@ use super::{CoupledEquation, FullState, MOST_INTEGRALS, MOST_STATES};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::dense_output::History;
 use crate::solver::endpoint::EndpointSteps;
-use crate::solver::integrator::{Integrator, Mode};
+use crate::solver::integrator::{Integrator, Mode, SKIPS_DENSE_OUTPUT};
 use crate::solver::limits::{Limit, Limits};
 pub use crate::solver::outcome::Failure;
 use crate::solver::outcome::Progress as PlainProgress;
@@ -170,8 +170,7 @@ impl Trajectory {
         self.advance_by_steps(clock, step, |motion, target, budget| {
             let rest = target.since(motion.history.end());
             let mut done = beside;
-            // WebAssembly does without endpoint-only steps, which would take minutes to compile.
-            let shift = if !cfg!(target_arch = "wasm32")
+            let shift = if SKIPS_DENSE_OUTPUT
                 && unobstructed
                 && motion.takes_endpoint_steps(equation, rest)
             {
