@@ -44,11 +44,12 @@ export RUSTUP_TOOLCHAIN := stable
 endif
 endif
 
-# What `make test` runs, each a target of its own, in two lines side by side: what needs the packed FMU, after it is packed,
-# and the rest. A check is printed when it has ended. Reports are counted, and notes repeated, at the end.
-CHECKS_OF_THE_PACKED = fmpy-tests package-tests release-tests host-tests page-tests instruction-counts
+# What `make test` runs, each a target of its own, in lines side by side: the checks of the sources, and, after the FMU is
+# packed, two that need it. A check is printed when it has ended. Reports are counted, and notes repeated, at the end.
 CHECKS_OF_THE_SOURCES = format lint python-lint licences documentation python-types rust-tests documentation-tests
-CHECKS = $(CHECKS_OF_THE_SOURCES) $(CHECKS_OF_THE_PACKED)
+CHECKS_IN_FMPY = fmpy-tests
+CHECKS_OF_THE_PACKED = package-tests release-tests host-tests page-tests instruction-counts
+CHECKS = $(CHECKS_OF_THE_SOURCES) $(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKED)
 define run_checks
 for check in $(1); do $(MAKE) --no-print-directory --assume-old=fmu --assume-old=native --assume-old=page $$check \
 >$(REPORTS)/$$check.log 2>&1 || echo $$check >>$(REPORTS)/failed; cat $(REPORTS)/$$check.log; done
@@ -99,8 +100,8 @@ heading = @printf '\n==> %s\n' "$(1)"
 
 .DELETE_ON_ERROR:
 .NOTPARALLEL:
-.PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test install-tests $(CHECKS) lint-all audit bless \
-test-platforms test-mosaik stress soak \
+.PHONY: help run fmu fmu-all native wheel pack-wheel release guide page paper examples test \
+install-tests $(CHECKS) lint-all audit bless test-platforms test-mosaik stress soak \
 fuzz bench bench-device env clean
 
 help:
@@ -109,7 +110,7 @@ help:
 	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test            run every check and test; each is a target too:'
-	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' '$(CHECKS_OF_THE_PACKED)'
+	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' '$(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKED)'
 	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
 	@echo 'make bless           write new bounds of the instructions of the hot calls (tests/performance)'
 	@echo 'make audit           look for advisories on the crates (needs the network)'
@@ -186,7 +187,8 @@ test: $(INSTALLED) $(NODE_INSTALLED)
 	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; } & packing=$$!; \
 	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
 	{ $(call run_checks,$(CHECKS_OF_THE_SOURCES)); } & \
-	wait $$packing; $(call run_checks,$(CHECKS_OF_THE_PACKED)); wait
+	wait $$packing; { $(call run_checks,$(CHECKS_IN_FMPY)); } & \
+	$(call run_checks,$(CHECKS_OF_THE_PACKED)); wait
 	@$(PYTHON) tests/summary.py $(REPORTS)
 
 install-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED) $(RELEASE_INSTALLED) \
