@@ -5,7 +5,7 @@
 //! * [`integrator`]: what the first two have in common: the steps that are kept, events, the
 //!   loop over steps; [`position_origin`]: where positions are counted from;
 //! * [`collocation`]: one step of Gauss collocation with dense output;
-//! * `endpoint`: steps of which only the end is asked for;
+//! * `endpoint`: steps of which only the end is asked for, of both kinds of motion;
 //! * `short_step`: short steps of 4 nodes, where the equation changes at each of them; `rotation`: the sines of an
 //!   alternating load in them;
 //! * [`step_control`]: how long the next step may be; [`iteration`]: when its stages are solved;

@@ -11,7 +11,8 @@
 //! held: for one state at a time that is a linear system in its slopes at the nodes. So the
 //! iteration converges as that of the mechanics alone, however fast a state relaxes. Integrals
 //! along the motion (energies supplied and lost) do not act back; they are summed up once the
-//! stages are known.
+//! stages are known. Between communication points that lie far apart, a system that is not stiff takes endpoint-only
+//! steps (`solver::endpoint`).
 
 mod newton;
 mod nodes;

@@ -1,10 +1,5 @@
 //! What the last of equal steps leaves for the next one.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use fearless_simd::{Simd, SimdBase, f64x4};
 use serde::{Deserialize, Serialize};
 

@@ -4,11 +4,6 @@
 //! which a motion does not that turns more than once in a step: what is continued is a polynomial times a bell,
 //! (1 + b·u²)⁻⁸, u being −1 at the begin of the step before and 1 at its end.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::plan::{NODES, Pair, both_permuted, multiply, pair, unpair};

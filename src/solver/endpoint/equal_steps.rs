@@ -1,10 +1,5 @@
 //! Equal steps, one after another, until their length should change.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::before::{LastPlan, LastStep};

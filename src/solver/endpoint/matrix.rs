@@ -1,10 +1,5 @@
 //! The matrices of a slope.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x4};
 
 use super::plan::{NODES, both_permuted, load, multiply, pair, scaled, unpair};

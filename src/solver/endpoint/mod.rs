@@ -2,11 +2,16 @@
 //!
 //! Between communication points that lie farther apart than a step, nothing of it is needed
 //! but its end, which superconverges: 8 nodes reach order 16 there. Steps are equal as long as
-//! their error allows, so that a [`Plan`] serves many of them, and share the way to the
-//! communication point evenly.
+//! their error allows, so that a [`plan`] serves many of them, and share the way to the
+//! communication point evenly. First-order states, where a system has some, have plans of their own ([`relaxation`]).
 //!
 //! What they gain beside steps of 16 nodes with dense output stands in the table of what is skipped
 //! (docs/performance.md).
+
+#![expect(
+    clippy::needless_range_loop,
+    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
+)]
 
 use fearless_simd::{Level, Simd, dispatch};
 use serde::{Deserialize, Serialize};
@@ -34,9 +39,6 @@ use stages::Plans;
 use system::LocalSystem;
 pub use system::{Coupled, System};
 pub use way::{End, Way};
-
-/// A step with dense output takes as much time as so many that have an end only, without a restart.
-const TIME_OF_DENSE: f64 = 3.0;
 
 /// How many times as long it is where that is not known, and at least: one that was taken long ago tells little.
 /// Measured: 0.8 at a tolerance of 1e-4, 1.2 at 1e-9, 2.3 at 1e-12, 3 to 5 at 1e-14.
@@ -112,11 +114,11 @@ impl<const K: usize> EndpointSteps<K> {
     }
 
     /// Whether ways of this length take less time than with dense output, one step of which serves as many as
-    /// fit into it: the next one would be this long, as far as is known.
-    pub fn are_faster(&self, rest: f64, dense: Option<f64>) -> bool {
+    /// fit into it: the next one would be this long, as far as is known, and takes so many times as long.
+    pub fn are_faster(&self, rest: f64, dense: Option<f64>, time_of_dense: f64) -> bool {
         self.length.is_none_or(|length| {
             let dense = dense.unwrap_or(LENGTH_OF_DENSE * length);
-            dense.max(LEAST_LENGTH_OF_DENSE * length) < TIME_OF_DENSE * rest.min(length)
+            dense.max(LEAST_LENGTH_OF_DENSE * length) < time_of_dense * rest.min(length)
         })
     }
 

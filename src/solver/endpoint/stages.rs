@@ -1,10 +1,5 @@
 //! The stages of one step, iterated on a plan.
 
-#![expect(
-    clippy::needless_range_loop,
-    reason = "iterators and closures are functions of their own, which are not compiled for the SIMD level"
-)]
-
 use std::hint::black_box;
 
 use fearless_simd::{Simd, SimdBase, f64x4};

@@ -7,6 +7,9 @@ use crate::solver::coupled::Stage;
 use crate::solver::endpoint::{End, Way};
 use crate::solver::integrator::Mode;
 
+/// A step with dense output takes as much time as so many that have an end only, without a restart.
+const TIME_OF_DENSE: f64 = 3.0;
+
 /// So many endpoint-only steps take no longer than one with dense output.
 const PER_DENSE_STEP: f64 = 2.0;
 
@@ -34,8 +37,12 @@ impl Trajectory {
         if !steps.takes_endpoint_steps {
             return false;
         }
-        let many =
-            || steps.endpoint.are_faster(rest, self.next_length) && !self.may_repeat(equation);
+        let many = || {
+            let faster = steps
+                .endpoint
+                .are_faster(rest, self.next_length, TIME_OF_DENSE);
+            faster && !self.may_repeat(equation)
+        };
         if !self.restarts.at_every_step() {
             many()
         } else if self.settings.control.repeated().is_loose() {
