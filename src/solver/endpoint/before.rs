@@ -30,10 +30,18 @@ pub struct Before {
     pub displacement: [f64; NODES],
 }
 
-/// The plans of the last step: half its length, half²·J, and the rates of the first-order states.
+/// What the plans of the last step follow from.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound(
+    serialize = "[f64; K]: Serialize",
+    deserialize = "[f64; K]: Deserialize<'de>"
+))]
 pub struct LastPlan<const K: usize> {
+    /// Half the length of the step, 0 where there was none.
     pub half: f64,
+    /// half²·J.
     pub product: f64,
+    /// The rates of the first-order states.
     pub rates: [f64; K],
 }
 

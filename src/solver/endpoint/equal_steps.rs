@@ -69,8 +69,9 @@ impl<const K: usize> EndpointSteps<K> {
         let count = (rest / free - 1e-9).ceil().max(1.0);
         *length = rest / count;
         // The host's times are rounded: steps that only differ by that share a plan.
-        if (rest - 2.0 * self.half * count).abs() < SAME * *length {
-            *length = 2.0 * self.half;
+        let last_length = 2.0 * self.last_plan.half;
+        if (rest - last_length * count).abs() < SAME * *length {
+            *length = last_length;
         }
         let length = *length;
         let half = 0.5 * length;
@@ -86,7 +87,7 @@ impl<const K: usize> EndpointSteps<K> {
         let here = in_lanes(simd, &way.state);
         let geometry = local.geometry(here.position);
         let states = local.states();
-        let (mut rates, mut first_slopes) = (self.rates, [0.0; K]);
+        let (mut rates, mut first_slopes) = (self.last_plan.rates, [0.0; K]);
         for k in 0..K {
             if k < states {
                 let slope = local.slope(k, load, &geometry, &here);
@@ -103,7 +104,7 @@ impl<const K: usize> EndpointSteps<K> {
         if K > 0 && time_scale * local.damping(&way.state) > STRONG_DAMPING {
             return Ok(Some(End::Blocked));
         }
-        let last_product = self.product;
+        let last_plan = self.last_plan;
         let product = if square < SLOPE_OFF * time_scale * time_scale {
             0.0
         } else {
@@ -125,12 +126,7 @@ impl<const K: usize> EndpointSteps<K> {
             _ => local.acceleration(load, &geometry, &here),
         };
         let mut guess = match &self.before {
-            Some(before) if !self.restarted || half == self.half => {
-                let last_plan = LastPlan {
-                    half: self.half,
-                    product: last_product,
-                    rates: self.rates,
-                };
+            Some(before) if !self.restarted || half == last_plan.half => {
                 let jump = self.restarted.then_some((first, first_slopes));
                 before.guess(simd, plans, states, &last_plan, jump)
             }
@@ -273,7 +269,11 @@ impl<const K: usize> EndpointSteps<K> {
             }
             way.now = way.target;
         }
-        (self.half, self.product, self.rates) = (half, product, rates);
+        self.last_plan = LastPlan {
+            half,
+            product,
+            rates,
+        };
         self.before = Some(before);
         way.state = state;
         // Those before one that is refused are taken.
@@ -291,7 +291,7 @@ impl<const K: usize> EndpointSteps<K> {
         half: f64,
         count: f64,
     ) -> f64 {
-        let of_this_length = self.half == half;
+        let of_this_length = self.last_plan.half == half;
         // Where every step restarts, it is renewed when their length is looked at.
         let due = self.restarted && self.seen.steps == 0;
         if self.slope.is_vague() || self.before.is_none() || !of_this_length || due {
@@ -312,9 +312,9 @@ impl<const K: usize> EndpointSteps<K> {
             SPREADS_OFF_ONCE
         };
         let near_enough = SLOPE_OFF + spreads * half * half * self.slope.spread;
-        if (self.product - wanted).abs() < near_enough {
+        if (self.last_plan.product - wanted).abs() < near_enough {
             // Matrices that are there serve another length too, with a slope that fits it.
-            self.product
+            self.last_plan.product
         } else if wanted > -SLOPE_OFF || !of_this_length && count < FEW {
             0.0
         } else {

@@ -32,7 +32,7 @@ mod system;
 mod table;
 mod way;
 
-use before::{Before, LastStep};
+use before::{Before, LastPlan, LastStep};
 use length::Seen;
 use mean_slope::MeanSlope;
 use stages::Plans;
@@ -65,11 +65,7 @@ const LEAST_ITERATIONS: u32 = 2;
 pub struct EndpointSteps<const K: usize> {
     /// Length of the next one, where it is free.
     length: Option<f64>,
-    /// Half the length of the last one and half²·J of its plan, 0 where there was none.
-    half: f64,
-    product: f64,
-    /// Rates of the first-order states in its plans.
-    rates: [f64; K],
+    last_plan: LastPlan<K>,
     before: Option<LastStep<K>>,
     /// The equation has changed since the last one: f jumps at its end.
     restarted: bool,
@@ -101,9 +97,11 @@ impl<const K: usize> EndpointSteps<K> {
     fn none_within(plans: Option<Box<Plans<K>>>) -> EndpointSteps<K> {
         EndpointSteps {
             length: None,
-            half: 0.0,
-            product: 0.0,
-            rates: [0.0; K],
+            last_plan: LastPlan {
+                half: 0.0,
+                product: 0.0,
+                rates: [0.0; K],
+            },
             before: None,
             restarted: false,
             iterations: FIRST_ITERATIONS,
@@ -130,7 +128,7 @@ impl<const K: usize> EndpointSteps<K> {
     /// Whether so many as long as the last one, which the load may have bounded, reach so far.
     #[inline]
     pub fn surely_reach(&self, rest: f64, steps: f64) -> bool {
-        let last = 2.0 * self.half;
+        let last = 2.0 * self.last_plan.half;
         self.length
             .is_some_and(|length| rest <= steps * length.min(last))
     }
@@ -150,12 +148,17 @@ impl<const K: usize> EndpointSteps<K> {
 
     /// Whether the numbers can be those of steps.
     pub fn are_valid(&self) -> bool {
+        let LastPlan {
+            half,
+            product,
+            rates,
+        } = self.last_plan;
         let positive = |number: f64| number > 0.0 && number.is_finite();
         self.before
-            .is_none_or(|before| before.is_valid() && self.half > 0.0)
-            && (self.rates.iter()).all(|rate| (0.0..f64::INFINITY).contains(rate))
-            && (0.0..f64::INFINITY).contains(&self.half)
-            && (-STEEPEST..=0.0).contains(&self.product)
+            .is_none_or(|before| before.is_valid() && half > 0.0)
+            && rates.iter().all(|rate| (0.0..f64::INFINITY).contains(rate))
+            && (0.0..f64::INFINITY).contains(&half)
+            && (-STEEPEST..=0.0).contains(&product)
             && self.length.is_none_or(positive)
             && (LEAST_ITERATIONS..=MOST_ITERATIONS).contains(&self.iterations)
             && self.seen.is_valid()
