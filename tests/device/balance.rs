@@ -80,6 +80,35 @@ prop_compose! {
     }
 }
 
+/// The time scale of a random device, and the unit of its source: a current fills the capacitance of 1 in about a period.
+pub fn scales(device: &Device) -> (f64, f64) {
+    let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
+    match device.port.source {
+        Source::Current => (period, 0.3 / period),
+        _ => (period, 1.0),
+    }
+}
+
+/// A drive from now on, in these units: a source that rises, a prestress, and what alternates.
+pub fn drive(
+    (period, unit): (f64, f64),
+    [source, slope, prestress, amplitude, frequency]: [f64; 5],
+) -> Drive {
+    let mut voltage = Polynomial::constant(unit * source);
+    voltage.set_derivative(1, unit * slope / period);
+    Drive {
+        since: DoubleDouble::ZERO,
+        lead: 0.0,
+        voltage,
+        prestress: Polynomial::constant(prestress),
+        harmonic: Harmonic {
+            amplitude: unit * amplitude,
+            frequency: frequency / period,
+            phase: 0.3,
+        },
+    }
+}
+
 /// Steps an ideal source with the bookkeeping that a host has to do.
 fn set(motion: &mut DeviceMotion, trajectory: &mut Clocked<Carried>, drive: Drive) {
     let time = trajectory.clock;
@@ -114,31 +143,19 @@ proptest! {
             1..6,
         ),
     ) {
-        let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
+        let units = scales(&device);
+        let (period, _) = units;
         let mut motion = DeviceMotion {
             device,
             drive: Drive::constant(0.0, 0.0),
             records_energy: true,
         };
-        // A current fills the capacitance of 1 in about a period.
-        let unit = if device.port.source == Source::Current { 0.3 / period } else { 1.0 };
         let mut trajectory = start(&motion, 0.0, 3e-12);
         let at_start = Present::of(&motion, &trajectory).stored.total();
         let mut largest = 0.0_f64;
         for (source, slope, prestress, periods, amplitude, frequency) in inputs {
-            let mut voltage = Polynomial::constant(unit * source);
-            voltage.set_derivative(1, unit * slope / period);
-            set(&mut motion, &mut trajectory, Drive {
-                since: DoubleDouble::ZERO,
-                lead: 0.0,
-                voltage,
-                prestress: Polynomial::constant(prestress),
-                harmonic: Harmonic {
-                    amplitude: unit * amplitude,
-                    frequency: frequency / period,
-                    phase: 0.3,
-                },
-            });
+            let drive = drive(units, [source, slope, prestress, amplitude, frequency]);
+            set(&mut motion, &mut trajectory, drive);
             for _ in 0..4 {
                 let progress = trajectory.advance(&motion, periods * period);
                 // Some are pulled in, far out.

@@ -1,10 +1,9 @@
 //! Steps of which only the end is asked for, with first-order states.
 
-use crate::balance::{device, off_or};
+use crate::balance::{device, drive, off_or, scales};
 use crate::scene::{Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::actuator::Drive;
-use dielectric_elastomer_actuator::actuator::device::{DeviceMotion, Source};
-use dielectric_elastomer_actuator::actuator::drive::{Harmonic, Polynomial};
+use dielectric_elastomer_actuator::actuator::device::DeviceMotion;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::coupled::Progress;
 use proptest::prelude::*;
@@ -49,32 +48,21 @@ proptest! {
             1..8,
         ),
     ) {
-        let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
+        let units = scales(&device);
+        let (period, _) = units;
         let motion = |records_energy: bool| DeviceMotion {
             device,
             drive: Drive::constant(0.0, 0.0),
             records_energy,
         };
-        let unit = if device.port.source == Source::Current { 0.3 / period } else { 1.0 };
         let mut both = [motion(false), motion(true)].map(|motion| {
             let trajectory = start(&motion, 0.0, 1e-11);
             (motion, trajectory)
         });
         for (source, slope, prestress, periods, amplitude, frequency) in inputs {
-            let mut voltage = Polynomial::constant(unit * source);
-            voltage.set_derivative(1, unit * slope / period);
+            let drive = drive(units, [source, slope, prestress, amplitude, frequency]);
             for (motion, trajectory) in &mut both {
-                motion.drive = Drive {
-                    since: trajectory.clock,
-                    lead: 0.0,
-                    voltage,
-                    prestress: Polynomial::constant(prestress),
-                    harmonic: Harmonic {
-                        amplitude: unit * amplitude,
-                        frequency: frequency / period,
-                        phase: 0.3,
-                    },
-                };
+                motion.drive = Drive { since: trajectory.clock, ..drive };
                 trajectory.restart();
             }
             for _ in 0..advances {

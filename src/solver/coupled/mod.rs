@@ -58,6 +58,15 @@ pub struct Stage<N = f64, const K: usize = MOST_STATES> {
 }
 
 impl<const K: usize> Stage<f64, K> {
+    /// With this position and rate.
+    pub fn of(motion: State, internal: [f64; K]) -> Self {
+        Stage {
+            position: motion.position,
+            rate: motion.rate,
+            internal,
+        }
+    }
+
     /// Position and rate.
     pub fn motion(&self) -> State {
         State {
@@ -115,6 +124,14 @@ pub trait CoupledEquation {
     /// state. Together with autonomy it makes a motion between two turning points repeat.
     fn is_time_reversible(&self) -> bool {
         false
+    }
+
+    /// Whether the motion between two turning points is repeated for ever, there and back, and nothing else is asked for.
+    fn repeats(&self) -> bool {
+        self.states() == 0
+            && self.integrals() == 0
+            && self.is_autonomous()
+            && self.is_time_reversible()
     }
 
     /// Whether f and z' are smooth wherever the position is positive.
@@ -239,11 +256,7 @@ impl FullState {
 
     /// The state as a stage.
     pub fn stage(&self) -> Stage {
-        Stage {
-            position: self.motion.position,
-            rate: self.motion.rate,
-            internal: self.internal,
-        }
+        Stage::of(self.motion, self.internal)
     }
 
     /// Whether all its numbers are finite.

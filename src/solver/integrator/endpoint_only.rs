@@ -19,9 +19,19 @@ impl<M: Method> Integrator<M> {
         }
     }
 
+    /// What a step may miss: less where its error is made again and again, by an orbit that repeats or by
+    /// restarts at every step.
+    pub(in crate::solver) fn step_control(&self, repeats: bool) -> StepControl {
+        if repeats || self.restarts.at_every_step() {
+            self.settings.control.repeated()
+        } else {
+            self.settings.control
+        }
+    }
+
     /// Follows the motion from the end of the last step toward `target`, keeping none of it, and moves
-    /// the origin there. Takes the first-order states along. Returns by how much, and whether the next such step would
-    /// meet no limit and no extreme.
+    /// the origin there. Takes the first-order states along. Returns by how much, 0 where it goes nowhere, and whether
+    /// the next such step would meet no limit and no extreme.
     pub(in crate::solver) fn go_to_end<const K: usize>(
         &mut self,
         target: DoubleDouble,
@@ -32,15 +42,10 @@ impl<M: Method> Integrator<M> {
     ) -> (DoubleDouble, bool) {
         let begin = self.history.end();
         self.arrive(begin);
-        let state = self.state();
         let mut way = Way {
             begin: self.start.time.add(begin),
             now: DoubleDouble::ZERO,
-            state: Stage {
-                position: state.position,
-                rate: state.rate,
-                internal: *internal,
-            },
+            state: Stage::of(self.state(), *internal),
             target: target.sub(begin),
             bounds: self.bounds(),
             control,
@@ -48,9 +53,9 @@ impl<M: Method> Integrator<M> {
         };
         let end = go(&mut self.method, &mut way);
         *budget = way.budget;
-        if end == End::Blocked && way.now == DoubleDouble::ZERO {
+        if way.now == DoubleDouble::ZERO {
             // What is kept serves the step with dense output that follows.
-            return (DoubleDouble::ZERO, false);
+            return (DoubleDouble::ZERO, end != End::Blocked);
         }
         *internal = way.state.internal;
         let shift = if end == End::Reached {

@@ -65,11 +65,7 @@ impl Trajectory {
         let mut way = Way {
             begin: *clock,
             now: DoubleDouble::ZERO,
-            state: Stage {
-                position: self.start.state.position,
-                rate: self.start.state.rate,
-                internal: [],
-            },
+            state: Stage::of(self.start.state, []),
             target: DoubleDouble::new(step),
             bounds: self.bounds(),
             control: self.step_control(false),

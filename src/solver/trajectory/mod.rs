@@ -15,9 +15,7 @@ use super::iteration::Diverged;
 use super::limits::{Limit, Limits};
 pub use super::outcome::{Failure, Progress};
 use super::short_step::{ShortStep, Trend};
-use super::step_control::{
-    HALVED, SHORTEST, StepControl, first_accepted, goes_on_from, most_growth,
-};
+use super::step_control::{HALVED, SHORTEST, first_accepted, goes_on_from, most_growth};
 use super::{Equation, LocalEquation, State};
 use crate::arithmetic::double_double::DoubleDouble;
 
@@ -231,16 +229,6 @@ impl Trajectory {
             self.method.longest_short_step = Some(0.5 * step);
         }
         taken
-    }
-
-    /// What a step may miss: less where its error is made again and again, by an orbit that repeats or by
-    /// restarts at every step.
-    fn step_control(&self, repeats: bool) -> StepControl {
-        if repeats || self.restarts.at_every_step() {
-            self.settings.control.repeated()
-        } else {
-            self.settings.control
-        }
     }
 
     /// Adds one more step with dense output; `rest` is the time still asked for. Returns by how

@@ -4,7 +4,6 @@ use super::Trajectory;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::solver::coupled::CoupledEquation;
 use crate::solver::endpoint::Coupled;
-use crate::solver::step_control::StepControl;
 
 /// The work of such a step, in iterations of one with dense output.
 const WORK: u32 = 2;
@@ -22,13 +21,11 @@ impl Trajectory {
     pub(super) fn takes_endpoint_steps<E: CoupledEquation>(&self, equation: &E, rest: f64) -> bool {
         let steps = &self.method.endpoint;
         let awaits = self.method.awaits_margin && equation.awaits_event();
-        let repeats =
-            equation.states() == 0 && equation.is_autonomous() && equation.is_time_reversible();
         let origin = (self.history.steps().last()).map_or(self.start.origin, |step| step.origin);
         equation.is_regular()
             && origin == DoubleDouble::ZERO
             && !awaits
-            && !repeats
+            && !equation.repeats()
             && equation.integrals() == 0
             && if self.restarts.at_every_step() {
                 steps.reach(rest, PER_DENSE_STEP)
@@ -46,8 +43,7 @@ impl Trajectory {
         budget: u32,
         work: &mut u32,
     ) -> (DoubleDouble, bool) {
-        let control = self.endpoint_control();
-        let level = self.settings.level;
+        let (level, control) = (self.settings.level, self.step_control(false));
         let mut internal = match &self.method.polynomials {
             Some(polynomials) => polynomials.end.internal,
             None => self.method.internal,
@@ -62,7 +58,7 @@ impl Trajectory {
             |carried, way| carried.endpoint.go(level, &Coupled(equation), way),
         );
         *work += (most - steps) * WORK;
-        if !self.history.is_empty() {
+        if gone.0 == DoubleDouble::ZERO {
             return gone;
         }
         self.method.internal = internal;
@@ -71,14 +67,5 @@ impl Trajectory {
             self.method.slopes_before = Some(derivatives);
         }
         gone
-    }
-
-    /// What a step may miss: less where its error is made again and again, by restarts at every step.
-    fn endpoint_control(&self) -> StepControl {
-        if self.restarts.at_every_step() {
-            self.settings.control.repeated()
-        } else {
-            self.settings.control
-        }
     }
 }

@@ -74,10 +74,7 @@ impl Trajectory {
         }
         let local = equation.at(&self.start.time.add(begin), &origin);
         let (states, integrals) = (equation.states(), equation.integrals());
-        let repeats = states == 0
-            && integrals == 0
-            && equation.is_autonomous()
-            && equation.is_time_reversible();
+        let repeats = equation.repeats();
         if equation.is_autonomous() && first && integrals == 0 && stands(&local, &start, states) {
             self.mode = Mode::AtRest;
             return Ok(DoubleDouble::ZERO);
