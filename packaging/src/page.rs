@@ -34,6 +34,10 @@ const BROWSER: Platform = Platform {
     newest_glibc: None,
 };
 
+/// Lets the compiler use vectors, which browsers have had since 2023: without them each operation becomes one for
+/// each lane, which takes twice the time to compile.
+const VECTORS: &str = "\x1f-Ctarget-feature=+simd128";
+
 /// The page as HTML. It is left in `target/page` too.
 ///
 /// # Errors
@@ -72,15 +76,14 @@ fn tool(name: &str) -> Result<std::ffi::OsString> {
 
 /// Compiles the actuator to WebAssembly and returns the path of the file.
 fn compile(project: &Metadata, toolchain: &Toolchain) -> Result<Utf8PathBuf> {
+    let mut flags = library::flags(project, toolchain, &BROWSER)?;
+    flags.push_str(VECTORS);
     let status = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .current_dir(&project.workspace_root)
         .args(["build", "--locked", "--quiet", "--profile", "page"])
         .args(["--package", PACKAGE, "--target", BROWSER.triple])
         .env("RUSTC", &toolchain.rustc)
-        .env(
-            "CARGO_ENCODED_RUSTFLAGS",
-            library::flags(project, toolchain, &BROWSER)?,
-        )
+        .env("CARGO_ENCODED_RUSTFLAGS", flags)
         .stdout(Stdio::null())
         .status()
         .context("cannot start cargo")?;

@@ -15,7 +15,10 @@ const part = (name) => document.getElementById(name);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const presetNamed = (wanted) => PRESETS.find(({ name }) => name === wanted);
 
-const actuator = await loadActuator();
+const actuator = await loadActuator().catch((error) => {
+  say("The actuator does not run in this browser. It needs WebAssembly with vectors, which browsers have had since 2023.");
+  throw error;
+});
 let { device } = presetNamed("silicone_swing");
 let motion;
 let playing = !still.matches;

@@ -11,8 +11,9 @@ def whose(actuator, scene):
 
 
 def fatal(actuator, scene):
-    """Takes its worker down with the scene phi = 0.5."""
+    """Takes its worker down with the scene phi = 0.5, after some seconds in which what it has done is fetched."""
     if scene["phi"] == 0.5:
+        time.sleep(3)
         os._exit(1)
     return {"twice": 2 * scene["phi"]}
 

@@ -20,6 +20,7 @@ def done(fmu_path, tmp_path_factory):
     return subprocess.run(words, capture_output=True, text=True, check=True, timeout=600).stdout, folder
 
 
+@pytest.mark.xdist_group("identification")
 def test_the_tables_of_the_page_are_those_that_are_printed(done):
     rows = re.findall(r"^\| \w+_\w+ .*\|$", (EXAMPLE / "README.md").read_text(), flags=re.MULTILINE)
     assert len(rows) == 9
@@ -33,6 +34,7 @@ def test_the_tables_of_the_page_are_those_that_are_printed(done):
     assert "the motion is exactly the same along gamma_s +1, tau_s +1, phi_scale +0.0077" in done[0]
 
 
+@pytest.mark.xdist_group("identification")
 def test_the_picture_and_the_preset_are_written(done):
     folder = done[1]
     assert (folder / "identification.png").stat().st_size > 20_000

@@ -83,6 +83,7 @@ def outcomes(fmu_path, si_path, tmp_path_factory):
     return [(code, (folder / str(number) / "output").read_text()) for number, code in enumerate(codes)]
 
 
+@pytest.mark.xdist_group("guide")
 @pytest.mark.parametrize(
     "number, quoted",
     [pytest.param(number, program.values[1], id=program.id) for number, program in enumerate(programs())],

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from conftest import PAGE, REPOSITORY
+from conftest import PAGE, PATIENCE, REPOSITORY
 from dielectric_actuator import Actuator, presets
 
 VACUUM = 8.8541878188e-12  # F/m, CODATA 2022
@@ -235,3 +235,12 @@ def test_the_page_stands_alone_and_is_put_together_the_same_again(tmp_path):
         check=True, timeout=600,
     )  # fmt: skip
     assert again.read_bytes() == PAGE.read_bytes()
+
+
+def test_a_browser_without_vectors_is_told_what_it_lacks(browser, address):
+    refuse = "WebAssembly.instantiate = () => Promise.reject(new WebAssembly.CompileError('no vectors'))"
+    with browser.new_context(offline=True) as context:
+        page = context.new_page()
+        page.add_init_script(refuse)
+        page.goto(address)
+        page.get_by_role("status").get_by_text("WebAssembly with vectors").wait_for(timeout=PATIENCE)
