@@ -17,7 +17,7 @@ pub fn rolled<const N: usize>() -> impl Iterator<Item = usize> {
 /// [`rolled`] where registers hold two numbers, so that a turn of the loop takes twice the instructions.
 #[inline(always)]
 pub fn rolled_if_narrow<S: Simd, const N: usize>() -> impl Iterator<Item = usize> {
-    let is_narrow = <S::f64s as SimdBase<S>>::LEN == 2;
+    let is_narrow = <f64x4<S> as Number>::IS_NARROW;
     (0..if is_narrow { black_box(N) } else { N }).map(|i| i % N)
 }
 
@@ -57,6 +57,8 @@ pub trait Lanes<S: Simd, const P: usize>: Number {
 macro_rules! lanes {
     ($($register:ident of $lanes:literal),*) => {$(
         impl<S: Simd> Number for $register<S> {
+            const IS_NARROW: bool = <S::f64s as SimdBase<S>>::LEN == 2;
+
             #[inline(always)]
             fn same(self, value: f64) -> Self {
                 $register::splat(self.simd, value)

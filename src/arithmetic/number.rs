@@ -10,6 +10,10 @@ const WHOLE: f64 = 6_755_399_441_055_744.0;
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
+    /// Whether its registers hold no more than two numbers: a formula of fewer operations is then faster than one in
+    /// which fewer wait for another.
+    const IS_NARROW: bool = false;
+
     /// `value`, in as many lanes as `self` has.
     #[must_use]
     fn same(self, value: f64) -> Self;
