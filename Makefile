@@ -46,9 +46,9 @@ export RUSTUP_TOOLCHAIN := stable
 endif
 endif
 
-# What `make test` runs, each a target of its own, in lines side by side: the checks of the sources and then those in other
-# programs, and, after the FMU is packed, two lines that need it. A check is printed when it has ended. Reports are
-# counted, and notes repeated, at the end.
+# What `make test` runs, each a target of its own, in three lines side by side: the checks of the sources, which the packing
+# of the FMU goes beside, and then those in other programs; those in FMPy; those of the package. All but the first need the
+# packed FMU. A check is printed when it has ended. Reports are counted, and notes repeated, at the end.
 CHECKS_OF_THE_SOURCES = format lint python-lint licences documentation python-types rust-tests documentation-tests
 CHECKS_IN_PROGRAMS = host-tests page-tests
 CHECKS_IN_FMPY = fmpy-tests

@@ -55,28 +55,25 @@ fn numerator_and_inverse<N: Number>(
     stretch: N,
     rate: N,
 ) -> [N; 2] {
+    let [one, six] = [1.0, 6.0].map(|value| stretch.same(value));
+    if N::IS_NARROW {
+        let [numerator, denominator] = in_few_operations(coefficients, load, [stretch, rate], six);
+        return [numerator, one / denominator];
+    }
     let Coefficients {
         inertia,
         linear,
         cubic,
         quintic,
     } = *coefficients;
-    let one = stretch.same(1.0);
     let square = stretch * stretch;
     let fourth = square * square;
-    let cube = stretch * square;
-    let lower = (cubic - load.voltage_squared).mul_add(square, linear);
-    let elastic = fourth.mul_add(quintic, lower);
-    let free = (rate * rate).mul_add(stretch.same(6.0), square);
-    if N::IS_NARROW {
-        let seventh = cube * fourth;
-        let inverse = one / seventh.mul_add(inertia, stretch + stretch);
-        let force = load.prestress - stretch * elastic;
-        return [seventh.mul_add(force, free), inverse];
-    }
     let third = (inertia * stretch) * square;
     let inverse = one / third.mul_add(fourth, stretch + stretch);
-    let force = cube * load.prestress - fourth * elastic;
+    let lower = (cubic - load.voltage_squared).mul_add(square, linear);
+    let elastic = fourth.mul_add(quintic, lower);
+    let force = (stretch * square) * load.prestress - fourth * elastic;
+    let free = (rate * rate).mul_add(six, square);
     [fourth.mul_add(force, free), inverse]
 }
 
@@ -87,9 +84,22 @@ fn numerator_and_inverse<N: Number>(
 pub fn acceleration_in_steps<N: Number>(
     coefficients: &Coefficients<N>,
     load: Load<N>,
-    [stretch, way]: [N; 2],
+    motion: [N; 2],
     [step, inverse]: [N; 2],
 ) -> N {
+    let by_rate = step.same(6.0) * (inverse * inverse);
+    let [numerator, denominator] = in_few_operations(coefficients, load, motion, by_rate);
+    numerator * ((step * step) / denominator)
+}
+
+/// Numerator and denominator of [`acceleration`], where 6λ'² is the square of a rate times `by_rate`.
+#[inline(always)]
+fn in_few_operations<N: Number>(
+    coefficients: &Coefficients<N>,
+    load: Load<N>,
+    [stretch, rate]: [N; 2],
+    by_rate: N,
+) -> [N; 2] {
     let &Coefficients {
         inertia,
         linear,
@@ -99,12 +109,11 @@ pub fn acceleration_in_steps<N: Number>(
     let square = stretch * stretch;
     let fourth = square * square;
     let seventh = (stretch * square) * fourth;
-    let quotient = (step * step) / seventh.mul_add(inertia, stretch + stretch);
     let lower = (cubic - load.voltage_squared).mul_add(square, linear);
     let force = load.prestress - stretch * fourth.mul_add(quintic, lower);
-    let by_rate = stretch.same(6.0) * (inverse * inverse);
-    let free = (way * way).mul_add(by_rate, square);
-    seventh.mul_add(force, free) * quotient
+    let free = (rate * rate).mul_add(by_rate, square);
+    let denominator = seventh.mul_add(inertia, stretch + stretch);
+    [seventh.mul_add(force, free), denominator]
 }
 
 /// The Hamiltonian 𝓗 of Eq. 18, nondimensional as in Eq. 19 and 0 for the

@@ -27,8 +27,8 @@ mod validation;
 
 pub use mode::Mode;
 
-/// Whether steps may do without dense output. Not in WebAssembly, where the live page is built in a shorter time for it:
-/// it reads the motion at short intervals.
+/// Whether steps may do without dense output. Not in WebAssembly: the live page reads the motion at short intervals, and
+/// its core is smaller by a quarter without such steps.
 pub(super) const SKIPS_DENSE_OUTPUT: bool = !cfg!(target_arch = "wasm32");
 
 /// What rounding may leave of a step that has been made.
