@@ -64,7 +64,7 @@ pub fn open<M: Model>(sealed: &[u8]) -> Result<&[u8], Fault> {
     let rest = rest
         .strip_prefix(&LAYOUT)
         .and_then(|rest| rest.strip_prefix(M::GUID.as_bytes()))
-        .ok_or_else(|| fault("they are of another version of it"))?;
+        .ok_or_else(|| fault("they are of another FMU, or of another version of it"))?;
     let (sizes, contents) = rest
         .split_at_checked(8)
         .ok_or_else(|| fault("they are incomplete"))?;

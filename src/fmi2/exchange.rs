@@ -25,7 +25,7 @@ pub unsafe extern "C" fn fmi2NewDiscreteStates<M: Model>(
         *info = fmi2EventInfo {
             newDiscreteStatesNeeded: false.into(),
             terminateSimulation: update.terminate.into(),
-            nominalsOfContinuousStatesChanged: false.into(),
+            nominalsOfContinuousStatesChanged: update.nominals_changed.into(),
             valuesOfContinuousStatesChanged: update.states_changed.into(),
             nextEventTimeDefined: false.into(),
             nextEventTime: 0.0,

@@ -34,16 +34,10 @@ impl Host {
         }
     }
 
-    /// Switches categories on or off; none listed means all. Those that are
-    /// not listed are switched off when others are switched on.
+    /// Switches the listed categories on and the others off, or all of them where none is listed. Where logging is
+    /// switched off, the list does not matter (FMI 2.0, section 2.1.5).
     pub fn set_logging(&mut self, on: bool, categories: &[&CStr]) -> Result<(), Fault> {
-        let mut enabled = if on && !categories.is_empty() {
-            [false; LOG_CATEGORIES.len()]
-        } else if categories.is_empty() {
-            [on; LOG_CATEGORIES.len()]
-        } else {
-            self.enabled
-        };
+        let mut enabled = [on && categories.is_empty(); LOG_CATEGORIES.len()];
         for wanted in categories {
             let known = LOG_CATEGORIES
                 .iter()
@@ -91,12 +85,12 @@ impl Host {
     /// Logs why a call was not done, and gives its status.
     #[cold]
     pub fn refuse(&self, function: &str, fault: Fault) -> fmi2Status {
-        let (status, category) = match fault.severity {
-            Severity::Discard => (fmi2Status_fmi2Discard, WARNINGS),
-            Severity::Error => (fmi2Status_fmi2Error, ERRORS),
-            Severity::Fatal => (fmi2Status_fmi2Fatal, ERRORS),
+        let status = match fault.severity {
+            Severity::Discard => fmi2Status_fmi2Discard,
+            Severity::Error => fmi2Status_fmi2Error,
+            Severity::Fatal => fmi2Status_fmi2Fatal,
         };
-        self.log(status, category, &format!("{function}: {}", fault.text));
+        self.log(status, ERRORS, &format!("{function}: {}", fault.text));
         status
     }
 

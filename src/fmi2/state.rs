@@ -19,13 +19,9 @@ unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut Saved, Fault> {
     unsafe { place(state.cast::<Saved>(), "the state") }
 }
 
-/// Hands a saved instance to the host, in the state that it has already or in a new one.
-fn hand_out(state: &mut fmi2FMUstate, new: Saved) {
-    // SAFETY: the host holds null, or a state that we gave and that it has not freed.
-    match unsafe { saved(*state) } {
-        Ok(old) => *old = new,
-        Err(_) => *state = Box::into_raw(Box::new(new)).cast(),
-    }
+/// Hands a saved instance to the host, which has to free it.
+fn handed_out(new: Saved) -> fmi2FMUstate {
+    Box::into_raw(Box::new(new)).cast()
 }
 
 pub unsafe extern "C" fn fmi2GetFMUstate<M: Model>(
@@ -36,9 +32,10 @@ pub unsafe extern "C" fn fmi2GetFMUstate<M: Model>(
         // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         // SAFETY: the host holds null, or a state that we gave and that it has not freed.
-        let before = unsafe { saved(*state) }.map(std::mem::take);
-        let now = component.instance.save(before.unwrap_or_default())?;
-        hand_out(state, now);
+        match unsafe { saved(*state) } {
+            Ok(before) => *before = component.instance.save(std::mem::take(before))?,
+            Err(_) => *state = handed_out(component.instance.save(Saved::default())?),
+        }
         Ok(None)
     })
 }
@@ -103,6 +100,8 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate<M: Model>(
     })
 }
 
+/// What `FMUstate` points to is written and never read: it is a result alone (FMI 2.0, section 2.1.8), and a host may
+/// leave it as it came from its stack. Each call makes a new state.
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate<M: Model>(
     c: fmi2Component,
     serializedState: *const fmi2Byte,
@@ -115,7 +114,7 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate<M: Model>(
         // SAFETY: the host points to a place for one value, or passes null.
         let state = unsafe { place(FMUstate, "FMUstate") }?;
         let bytes = envelope::open::<M>(sealed)?;
-        hand_out(state, component.instance.saved(bytes)?);
+        *state = handed_out(component.instance.saved(bytes)?);
         Ok(None)
     };
     guarded::<M>(c, "fmi2DeSerializeFMUstate", Call::State, body)

@@ -22,6 +22,8 @@ pub struct Exchange<M: Model> {
     pub(super) state: M::State,
     /// A tuned parameter has changed the state, and the host does not know that yet.
     pub(super) states_changed: bool,
+    /// The typical sizes of the states that the host has been told of.
+    nominals: M::State,
     pub(super) collapse: Option<Collapse<M::Limit>>,
     /// The limit at which the host's last step has ended, where the simulation is to end there. Hosts read
     /// results for the last time before they handle this event.
@@ -37,6 +39,8 @@ pub struct Update {
     pub terminate: bool,
     /// The continuous states have jumped.
     pub states_changed: bool,
+    /// The typical sizes of the continuous states have changed.
+    pub nominals_changed: bool,
     /// For the host's log.
     pub message: Option<Message>,
 }
@@ -46,6 +50,17 @@ fn recording<M: Model>(scene: &M::Scene, time: DoubleDouble, state: &M::State) -
     Recording::begin(M::records_extremes(scene), time, M::second_order(state))
 }
 
+/// The typical sizes of the states, as a state.
+fn nominals<M: Model>(scene: &M::Scene) -> M::State {
+    let mut nominals = M::start(scene);
+    for place in 0..M::STATES.len() {
+        if let Some(component) = M::component(&mut nominals, place) {
+            *component = M::nominal(scene, place);
+        }
+    }
+    nominals
+}
+
 impl<M: Model> Exchange<M> {
     pub(super) fn new(scene: &M::Scene, time: DoubleDouble) -> Exchange<M> {
         let state = M::start(scene);
@@ -53,6 +68,7 @@ impl<M: Model> Exchange<M> {
             time,
             state,
             states_changed: false,
+            nominals: nominals::<M>(scene),
             collapse: None,
             arrival: None,
             record: recording::<M>(scene, time, &state),
@@ -87,6 +103,7 @@ impl<M: Model> Exchange<M> {
     pub(super) fn is_valid(&self, scene: &M::Scene) -> bool {
         let mut collapses = self.collapse.iter().chain(&self.arrival);
         M::is_finite(&self.state)
+            && M::is_finite(&self.nominals)
             && self.time.is_finite()
             && collapses.all(|collapse| collapse.time.is_finite())
             && self.record.is_valid(M::records_extremes(scene))
@@ -135,9 +152,11 @@ impl<M: Model> Instance<M> {
         let scene = self.scene.clone();
         let exchange = self.exchange()?;
         exchange.arrival = None;
+        let before = std::mem::replace(&mut exchange.nominals, nominals::<M>(&scene));
         let mut update = Update {
             terminate: false,
             states_changed: std::mem::take(&mut exchange.states_changed),
+            nominals_changed: exchange.nominals != before,
             message: None,
         };
         if let Some(Collapse { limit, .. }) = exchange.collapse {
@@ -188,11 +207,13 @@ impl<M: Model> Instance<M> {
         exchange
             .record
             .include_step(M::limits(&scene), time, motion);
-        exchange.account.include_step(&scene, time, &state);
+        let event = exchange.account.include_step(&scene, time, &state);
         exchange.arrival = M::limit_reached(&scene, &time, &state, REACHED)
             .filter(|&limit| M::at_limit(&scene, limit) == AtLimit::Terminate)
             .map(|limit| Collapse { limit, time });
-        Ok(exchange.arrival.is_some() || M::limit_reached(&scene, &time, &state, 0.0).is_some())
+        Ok(event
+            || exchange.arrival.is_some()
+            || M::limit_reached(&scene, &time, &state, 0.0).is_some())
     }
 
     /// Sets the time of the model.

@@ -11,6 +11,7 @@ mod fault;
 mod phase;
 mod run;
 mod state;
+mod tuning;
 mod values;
 
 pub use exchange::{Exchange, Update};

@@ -132,7 +132,7 @@ impl<M: Model> Run<M> {
         if self.cut_from == Some(current) {
             return Err(self.asked_again(current));
         }
-        let same = ahead.abs() <= SAME * current.abs();
+        let same = ahead.abs() <= SAME * current.abs() && ahead.is_finite();
         let deviation = if same {
             None
         } else {

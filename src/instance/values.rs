@@ -6,8 +6,8 @@ use super::phase::Phase;
 use super::{Fault, Instance, Simulation};
 use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
+use crate::model::Model;
 use crate::model::variables::{Access, Kind, Variability, Variable};
-use crate::model::{Model, Place, View};
 use crate::shortest::Shortest;
 
 /// The types of FMI under which a variable can be got and set.
@@ -285,52 +285,6 @@ impl<M: Model> Instance<M> {
             self.record_anew();
         }
         Ok(())
-    }
-
-    /// Refuses tunable parameters with which there is no motion from the present state. Returns the state that
-    /// they make of it, where it changes.
-    fn check_tuned(
-        &self,
-        references: &[u32],
-        value: &impl Fn(usize) -> f64,
-    ) -> Result<Option<M::State>, Fault> {
-        let settings = references
-            .iter()
-            .enumerate()
-            .filter_map(|(place, &reference)| {
-                let variable = &M::VARIABLES[reference as usize];
-                match variable.access {
-                    Access::Setting { set, .. } => Some((variable.name, set, value(place))),
-                    _ => None,
-                }
-            });
-        let mut scene = None;
-        let mut last = None;
-        for (name, set, value) in settings {
-            set(scene.get_or_insert_with(|| self.scene.clone()), value);
-            last = Some((name, value));
-        }
-        let (Some(scene), Some((name, value))) = (scene, last) else {
-            return Ok(None);
-        };
-        let view = self.view();
-        let state = M::state_tuned_to(&view, &scene);
-        let tuned = View {
-            scene: &scene,
-            place: Place::of_state(*view.time, state),
-            ..view
-        };
-        M::check_state(&tuned).map_err(|why| {
-            Fault::error(format!("{name} = {} cannot be set: {why}", Shortest(value)))
-        })?;
-        Ok((state != M::state(&view)).then_some(state))
-    }
-
-    /// Sets the state that the host integrates.
-    fn jump_to(&mut self, state: M::State) {
-        if let Simulation::Exchange(now) = &mut self.simulation {
-            (now.state, now.states_changed) = (state, true);
-        }
     }
 
     /// Counts the time of the drive from the present communication point on.

@@ -91,6 +91,14 @@ pub trait Model: Copy + Debug + PartialEq + 'static {
     /// A message that says which value does not go with which other.
     fn check_start(scene: &Self::Scene) -> Result<(), String>;
 
+    /// Checks that the settings do not exclude each other, also where the host tunes them later.
+    ///
+    /// # Errors
+    /// A message that says which value does not go with which other.
+    fn check_settings(_scene: &Self::Scene) -> Result<(), String> {
+        Ok(())
+    }
+
     /// The state at the start time.
     fn start(scene: &Self::Scene) -> Self::State;
 
@@ -240,8 +248,8 @@ pub trait Account<M: Model>:
     /// Records from this state on.
     fn begin(scene: &M::Scene, time: DoubleDouble, state: &M::State) -> Self;
 
-    /// Records the host's step that has come to this state.
-    fn include_step(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State);
+    /// Records the host's step that has come to this state. Returns whether an event is to be handled there.
+    fn include_step(&mut self, scene: &M::Scene, time: DoubleDouble, state: &M::State) -> bool;
 
     /// An event begins, in this state and with the inputs that have led to it.
     fn enter_event(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
@@ -257,7 +265,9 @@ pub trait Account<M: Model>:
 impl<M: Model> Account<M> for () {
     fn begin(_scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
 
-    fn include_step(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
+    fn include_step(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) -> bool {
+        false
+    }
 
     fn include(&mut self, _scene: &M::Scene, _time: DoubleDouble, _state: &M::State) {}
 

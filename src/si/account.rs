@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::sample::Basis;
-use super::{OnBreakdown, Si, SiScene, SiState};
+use super::{OnBreakdown, REACHED, Si, SiScene, SiState};
 use crate::actuator::device::{Exchanged, Source};
 use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
@@ -88,11 +88,13 @@ impl Account<Si> for SiAccount {
         account
     }
 
-    fn include_step(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
+    fn include_step(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) -> bool {
         if scene.record_energy && time.since(self.time) > 0.0 {
             self.integrate(scene, time, state);
         }
-        self.arrive(scene, time, state);
+        (self.time, self.state) = (time, *state);
+        // What changes at events only is recorded when the host handles this one.
+        self.is_first_breakdown(scene, time, state)
     }
 
     fn enter_event(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
@@ -163,13 +165,16 @@ impl SiAccount {
     }
 
     fn look_for_breakdown(&mut self, scene: &SiScene, time: DoubleDouble, state: &SiState) {
-        let awaited = scene.device.breakdown_field > 0.0 && self.breakdown.is_none();
-        if !awaited || scene.at_breakdown() != OnBreakdown::Flag {
-            return;
-        }
-        if view_of(scene, &time, state).breakdown_margin_part() <= super::REACHED {
+        if self.is_first_breakdown(scene, time, state) {
             self.breakdown = Some(time);
         }
+    }
+
+    /// Whether the true field has come to breakdown, which is not recorded yet and does not end the motion.
+    fn is_first_breakdown(&self, scene: &SiScene, time: DoubleDouble, state: &SiState) -> bool {
+        self.breakdown.is_none()
+            && scene.at_breakdown() == OnBreakdown::Flag
+            && scene.is_at_breakdown(&time, state, REACHED)
     }
 
     /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.

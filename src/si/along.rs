@@ -30,14 +30,15 @@ impl View<'_, Si> {
             origin: basis.origin,
         };
         let held = self.is_held();
-        let moving = if held { 0.0 } else { 1.0 };
+        let [follows, moves] =
+            [self.is_held_at_a_stretch(), held].map(|at_rest| f64::from(!at_rest));
         let (state, changed) = (self.state(), &direction.state);
         let [now, slopes] = [own(&state), own(changed)];
         let own: [Dual; 1 + BRANCHES] = std::array::from_fn(|k| Dual::new(now[k], slopes[k]));
-        let rate = Dual::new(state.motion.rate, moving * changed.motion.rate);
+        let rate = Dual::new(state.motion.rate, moves * changed.motion.rate);
         let [charge, dashpots @ ..] = own;
         let moved = Stage {
-            position: Dual::new(stage.position, moving * changed.motion.position),
+            position: Dual::new(stage.position, follows * changed.motion.position),
             rate: rate * basis.scales.time,
             internal: internal(&basis.device, charge / basis.scales.charge, &dashpots),
         };

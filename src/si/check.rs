@@ -23,16 +23,6 @@ impl SiScene {
                  lambda_max = {upper}; set it, or the limits, so that it does"
             ));
         }
-        let [limit, second, third] = self.stiffening;
-        if limit > 0.0 && (second != 0.0 || third != 0.0) {
-            return Err(format!(
-                "J_m = {} chooses the Gent law and kappa2 = {}, kappa3 = {} the Yeoh law; set \
-                 one of them to 0",
-                Shortest(limit),
-                Shortest(second),
-                Shortest(third)
-            ));
-        }
         let source = self.source();
         for (other, name, unit) in [
             (Source::Current, "current", "A"),
@@ -49,14 +39,7 @@ impl SiScene {
                 ));
             }
         }
-        if source != Source::Voltage && self.alternating[0] != 0.0 {
-            return Err(format!(
-                "V_ac = {} V is added to the supply voltage only, and the source imposes the {}; \
-                 set V_ac to 0 or source to voltage",
-                Shortest(self.alternating[0]),
-                source.name()
-            ));
-        }
+        self.check_settings()?;
         let described = self.described();
         self.check_size(&Scales::of(&described))?;
         self.check_leak()?;
@@ -67,28 +50,9 @@ impl SiScene {
                 return Err(format!(
                     "lambda_start = {stretch} lies beyond locking, which J_m = {} puts at {} and \
                      {}; set it in between",
-                    Shortest(limit),
+                    Shortest(self.stiffening[0]),
                     Shortest(low),
                     Shortest(high)
-                ));
-            }
-        }
-        let permittivity = &device.permittivity;
-        for stretch in permittivity
-            .extremes()
-            .into_iter()
-            .filter(|stretch| (limits.lower..=limits.upper).contains(stretch))
-            .chain([limits.lower, limits.upper])
-        {
-            let [value, _] = permittivity.at(stretch);
-            if value <= 0.0 {
-                let [k1, k2, k3] = permittivity.terms.map(Shortest);
-                return Err(format!(
-                    "k1 = {k1}, k2 = {k2} and k3 = {k3} make the permittivity {} of what it is at 1 \
-                     where the stretch is {}; it must stay above 0 between lambda_min = {lower} and \
-                     lambda_max = {upper}, set these nearer to 1 or other k",
-                    Shortest(value),
-                    Shortest(stretch)
                 ));
             }
         }
@@ -103,6 +67,55 @@ impl SiScene {
                      lambda_start = {stretch}; set it nearer to lambda_start",
                     k + 1,
                     Shortest(dashpot)
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks what may also change later.
+    ///
+    /// # Errors
+    /// As of [`SiScene::check`].
+    pub(super) fn check_settings(&self) -> Result<(), String> {
+        let [limit, second, third] = self.stiffening;
+        if limit > 0.0 && (second != 0.0 || third != 0.0) {
+            return Err(format!(
+                "J_m = {} chooses the Gent law and kappa2 = {}, kappa3 = {} the Yeoh law; set \
+                 one of them to 0",
+                Shortest(limit),
+                Shortest(second),
+                Shortest(third)
+            ));
+        }
+        let source = self.source();
+        if source != Source::Voltage && self.alternating[0] != 0.0 {
+            return Err(format!(
+                "V_ac = {} V is added to the supply voltage only, and the source imposes the {}; \
+                 set V_ac to 0 or source to voltage",
+                Shortest(self.alternating[0]),
+                source.name()
+            ));
+        }
+        let limits = self.limits;
+        let permittivity = &self.folded().device.permittivity;
+        for stretch in permittivity
+            .extremes()
+            .into_iter()
+            .filter(|stretch| (limits.lower..=limits.upper).contains(stretch))
+            .chain([limits.lower, limits.upper])
+        {
+            let [value, _] = permittivity.at(stretch);
+            if value <= 0.0 {
+                let [k1, k2, k3] = permittivity.terms.map(Shortest);
+                return Err(format!(
+                    "k1 = {k1}, k2 = {k2} and k3 = {k3} make the permittivity {} of what it is at 1 \
+                     where the stretch is {}; it must stay above 0 between lambda_min = {} and \
+                     lambda_max = {}, set these nearer to 1 or other k",
+                    Shortest(value),
+                    Shortest(stretch),
+                    Shortest(limits.lower),
+                    Shortest(limits.upper)
                 ));
             }
         }

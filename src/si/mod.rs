@@ -162,14 +162,8 @@ impl Model for Si {
         if let Some(limit) = scene.limits.reached(&state.motion, tolerance) {
             return Some(SiLimit::Stretch(limit));
         }
-        let view = View::<Si> {
-            scene,
-            place: Place::of_state(*time, *state),
-            time,
-            collapse: None,
-        };
-        let broken =
-            scene.at_breakdown() != OnBreakdown::Flag && view.breakdown_margin_part() <= tolerance;
+        let broken = scene.at_breakdown() != OnBreakdown::Flag
+            && scene.is_at_breakdown(time, state, tolerance);
         broken.then_some(SiLimit::Breakdown)
     }
 
@@ -226,6 +220,10 @@ impl Model for Si {
 
     fn extremes(view: &View<Si>) -> Option<Extremes> {
         view.extremes()
+    }
+
+    fn check_settings(scene: &SiScene) -> Result<(), String> {
+        scene.check_settings()
     }
 
     fn window(scene: &SiScene) -> f64 {

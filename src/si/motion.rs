@@ -3,13 +3,15 @@
 //! The clock is in seconds, the trajectory in nondimensional time. The conversion of a step rounds it.
 //! The next step corrects this, so that rounding errors do not add up.
 
+mod energy;
+
 use serde::{Deserialize, Serialize};
 
 use super::folded::{Described, Folded};
 use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState};
 use super::trajectory::SiTrajectory;
-use super::{Si, SiLimit};
-use crate::actuator::device::{DeviceMotion, Elasticity, Exchanged, LocalDevice};
+use super::{REACHED, Si, SiLimit};
+use crate::actuator::device::{DeviceMotion, Elasticity, LocalDevice};
 use crate::actuator::scales::Scales;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::Integration;
@@ -130,28 +132,6 @@ impl SiMotion {
         goes_on.then_some(slopes[0] * self.scales.current())
     }
 
-    /// Energies lost and supplied since the start in J; 0 where they are not recorded. Where an ideal source has
-    /// jumped since the last advance, the energy of the jump is included.
-    #[must_use]
-    pub fn exchanged(&self, scene: &SiScene, time: &DoubleDouble) -> Exchanged {
-        let mut sums = self.trajectory.integrals();
-        if self.stale && self.motion.records_energy && self.follows(scene) {
-            let motion = DeviceMotion {
-                drive: scene.drive(&self.scales),
-                ..self.motion
-            };
-            let step = self.at_present(time, |local, stage| {
-                let (origin, _) = self.stretch_from_origin();
-                let now = motion.at(&self.reached(time), &origin);
-                now.exchanged_by_step(local.load(0.0).source, stage).all()
-            });
-            sums.iter_mut()
-                .zip(step)
-                .for_each(|(sum, step)| *sum += step);
-        }
-        Exchanged::from_integrals(&sums.map(|sum| sum * self.scales.energy))
-    }
-
     /// The extremes of the stretch, where they are recorded.
     #[must_use]
     pub fn extremes(&self) -> Option<Extremes> {
@@ -265,7 +245,8 @@ impl SiMotion {
         let (begin, second) = (*clock, self.scales.time);
         let target = begin.plus(step).renormalized();
         let end = self.scales.time(target);
-        let mut reached = self.reached(&begin);
+        let from = self.reached(&begin);
+        let mut reached = from;
         loop {
             let rest = end.since(reached);
             let progress = if rest > 0.0 {
@@ -279,8 +260,12 @@ impl SiMotion {
                 self.lead = reached.since(end);
                 return Ok(Progress::Whole);
             }
-            // In s. Where the motion stops at once, rounding must not lead the host's clock back.
-            let after = (step - end.since(reached) * second).max(0.0);
+            // In s. Where the motion stops at once, rounding must not move the host's clock.
+            let after = if reached == from {
+                0.0
+            } else {
+                (step - end.since(reached) * second).max(0.0)
+            };
             *clock = begin.plus(after).renormalized();
             self.lead = reached.since(self.scales.time(*clock));
             let limit = match progress {
@@ -288,10 +273,7 @@ impl SiMotion {
                 Ok(Progress::Stopped { limit, .. }) => match limit {
                     coupled::Event::Limit(limit) => SiLimit::Stretch(limit),
                     coupled::Event::Margin => {
-                        self.breakdown = self.breakdown.or(Some(*clock));
-                        if let SiTrajectory::Coupled(trajectory) = &mut self.trajectory {
-                            trajectory.pass_margin();
-                        }
+                        self.break_down(*clock);
                         if scene.at_breakdown() == OnBreakdown::Flag {
                             continue;
                         }
@@ -310,23 +292,12 @@ impl SiMotion {
         }
     }
 
-    /// Adds the energy that an ideal source exchanges at once when it meets this charge, in C, on the electrodes.
-    fn book_charging(&mut self, scene: &SiScene, time: &DoubleDouble, charge: f64) {
-        let capacitance = self.at_present(time, |local, stage| {
-            local.capacitance(local.stretch(stage.position))
-        });
-        let before = scene.source_before(&self.scales, charge, capacitance);
-        self.book_step(time, before);
-    }
-
-    /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.
-    fn book_step(&mut self, time: &DoubleDouble, before: f64) {
-        if !self.motion.records_energy {
-            return;
+    /// Notes breakdown, which is awaited no more.
+    fn break_down(&mut self, time: DoubleDouble) {
+        self.breakdown = self.breakdown.or(Some(time));
+        if let SiTrajectory::Coupled(trajectory) = &mut self.trajectory {
+            trajectory.pass_margin();
         }
-        let exchanged =
-            self.at_present(time, |local, stage| local.exchanged_by_step(before, stage));
-        self.trajectory.book(&exchanged.all());
     }
 }
 
@@ -349,6 +320,11 @@ impl Integration<Si> for SiMotion {
             breakdown: None,
             earlier: None,
         };
+        if scene.at_breakdown() == OnBreakdown::Flag
+            && scene.is_at_breakdown(time, &scene.start, REACHED)
+        {
+            begun.break_down(*time);
+        }
         Integration::record_anew(&mut begun, scene);
         begun.book_charging(scene, time, scene.start.charge);
         begun

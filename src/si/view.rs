@@ -11,6 +11,24 @@ use crate::solver::coupled::{LocalCoupledEquation, Stage};
 use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 
+impl SiScene {
+    /// Whether the true field of a state has come to breakdown, but for this part of the breakdown field.
+    pub(super) fn is_at_breakdown(
+        &self,
+        time: &DoubleDouble,
+        state: &SiState,
+        tolerance: f64,
+    ) -> bool {
+        let view = View::<Si> {
+            scene: self,
+            place: Place::of_state(*time, *state),
+            time,
+            collapse: None,
+        };
+        self.device.breakdown_field > 0.0 && view.breakdown_margin_part() <= tolerance
+    }
+}
+
 impl View<'_, Si> {
     /// The limit at which the actuator is held. None where the simulation ends there instead: the host then
     /// reads the state of arrival.
@@ -22,6 +40,11 @@ impl View<'_, Si> {
     /// Whether the actuator is held.
     pub(super) fn is_held(&self) -> bool {
         self.held().is_some()
+    }
+
+    /// Whether the actuator is held at a limit of the stretch.
+    pub(super) fn is_held_at_a_stretch(&self) -> bool {
+        matches!(self.held(), Some(SiLimit::Stretch(_)))
     }
 
     /// The present state; at rest where it is held.
@@ -68,7 +91,7 @@ impl View<'_, Si> {
     /// What the quantities are computed with, and the present stage.
     pub(super) fn basis(&self) -> (Basis, Stage) {
         let state = self.state();
-        let held = matches!(self.held(), Some(SiLimit::Stretch(_)));
+        let held = self.is_held_at_a_stretch();
         let (origin, position) = match self.place {
             Place::On(motion) if !held => motion.stretch_from_origin(),
             _ => (DoubleDouble::ZERO, state.motion.position),

@@ -325,3 +325,30 @@ fn a_step_that_is_too_much_work_can_be_gone_on_with() {
     assert_eq!((terminated, host.time()), (1, reached));
     assert_eq!(host.step(reached, 0.1), ERROR);
 }
+
+/// A communication point that is no number is no time at which a step has ended, with a stop time or without.
+#[test]
+fn a_communication_point_that_is_not_finite_is_refused() {
+    for defined in [0, 1] {
+        let host = Host::new();
+        let c = host.component;
+        unsafe {
+            assert_eq!(fmi2SetupExperiment(c, 0, 0.0, 0.0, defined, 9.0), OK);
+            assert_eq!(fmi2EnterInitializationMode(c), OK);
+            assert_eq!(fmi2ExitInitializationMode(c), OK);
+        }
+        for steps in 0..2 {
+            let before = host.serialized();
+            for current in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+                assert_eq!(host.step(current, 0.5), ERROR, "{current}");
+                assert!(
+                    host.last_line().contains("is not the time"),
+                    "{}",
+                    host.last_line()
+                );
+                assert_eq!(host.serialized(), before);
+            }
+            assert_eq!(host.step(0.5 * f64::from(steps), 0.5), OK);
+        }
+    }
+}

@@ -178,6 +178,21 @@ fn log_categories_are_obeyed() {
     assert_eq!(only(c"logStatusError"), OK);
     assert_eq!(host.set("phi", f64::NAN), ERROR);
     assert_eq!(lines(), before + 1);
+    // A discarded call is among the errors, as the description of the category says.
+    for (name, value) in [("phi_ac", 0.1), ("omega_ac", 1000.0)] {
+        assert_eq!(host.set(name, value), OK);
+    }
+    assert_eq!(host.step(0.0, 1e9), DISCARD);
+    assert_eq!(lines(), before + 2);
+    // Where logging is switched off, the list does not matter.
+    let warnings = c"logStatusWarning".as_ptr();
+    assert_eq!(
+        unsafe { fmi2SetDebugLogging(host.component, 0, 1, &warnings) },
+        OK
+    );
+    assert_eq!(host.set("phi", f64::NAN), ERROR);
+    assert_eq!(lines(), before + 2);
+    assert_eq!(only(c"logStatusError"), OK);
     assert_eq!(only(c"logNothing"), ERROR);
     assert!(
         host.last_line()

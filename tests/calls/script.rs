@@ -12,6 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use super::host::{ERROR, Host, OK, bytes_of};
 
+/// A pointer that leads nowhere.
+const NOWHERE: fmi2FMUstate = std::ptr::without_provenance_mut(8);
+
 /// Where the saved instance begins in a serialized state: after "DEA state",
 /// layout, GUID, length and checksum.
 pub const CONTENTS: usize = 9 + 2 + 38 + 4 + 4;
@@ -287,8 +290,16 @@ impl<M: Model> Stage<M> {
                 if *sealed && bytes.len() > CONTENTS {
                     seal(&mut bytes);
                 }
-                let (data, state) = (bytes.as_ptr().cast(), &mut self.states[slot(*to)]);
-                unsafe { fmi2DeSerializeFMUstate::<M>(c, data, bytes.len(), state) }
+                // What the result held before does not matter.
+                let (data, mut new) = (bytes.as_ptr().cast(), NOWHERE);
+                let read = unsafe { fmi2DeSerializeFMUstate::<M>(c, data, bytes.len(), &mut new) };
+                if read == OK {
+                    let old = std::mem::replace(&mut self.states[slot(*to)], new);
+                    unsafe { fmi2FreeFMUstate::<M>(c, &mut { old }) };
+                } else {
+                    demand(new == NOWHERE, "an error wrote a state")?;
+                }
+                read
             }
             Act::EnterEvent => unsafe { fmi2EnterEventMode::<M>(c) },
             Act::NewDiscreteStates => unsafe {

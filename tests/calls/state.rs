@@ -386,3 +386,28 @@ fn steps_are_the_same_whether_the_host_may_go_back_or_not() {
     };
     assert_eq!(run(0), run(1));
 }
+
+/// A state read from bytes is a new one, whatever the result held before: nothing, or another state of the host.
+#[test]
+fn bytes_are_read_into_a_new_state() {
+    let host = Host::in_phase("stepping");
+    let c = host.component;
+    let early = host.serialized();
+    assert_eq!(host.step(0.0, 2.0), OK);
+    let (mut late, mut read) = (null_mut(), std::ptr::without_provenance_mut(0x1234));
+    unsafe {
+        assert_eq!(fmi2GetFMUstate(c, &mut late), OK);
+        let (data, size) = (early.as_ptr().cast(), early.len());
+        assert_eq!(fmi2DeSerializeFMUstate(c, data, size, &mut read), OK);
+        let mut other = late;
+        assert_eq!(fmi2DeSerializeFMUstate(c, data, size, &mut other), OK);
+        assert!(other != late && other != read);
+        assert_eq!(fmi2SetFMUstate(c, read), OK);
+        assert_eq!(host.time(), 0.0);
+        assert_eq!(fmi2SetFMUstate(c, late), OK);
+        assert_eq!(host.time(), 2.0);
+        for mut state in [late, read, other] {
+            assert_eq!(fmi2FreeFMUstate(c, &mut state), OK);
+        }
+    }
+}

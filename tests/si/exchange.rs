@@ -176,9 +176,16 @@ fn breakdown_is_seen_in_model_exchange() {
         let mut theirs = Integrator::begun(&values);
         let mut ended = false;
         while theirs.host.time < 2e-6 && !ended {
-            let before = theirs.indicators()[2];
-            let event = theirs.step(1e-9) || before * theirs.indicators()[2] <= 0.0;
-            if event {
+            let (before, known) = (theirs.indicators()[2], theirs.host.get("broken_down"));
+            let asked = theirs.step(1e-9);
+            // Nothing but an event changes what is discrete, nor makes an indicator jump.
+            let crossed = before * theirs.indicators()[2] <= 0.0;
+            if choice == 1.0 {
+                assert_eq!(theirs.host.get("broken_down"), known);
+            }
+            // Where the simulation is to end, breakdown can be read before its event has been handled.
+            assert!(asked == crossed || choice == 3.0);
+            if asked {
                 theirs.host.instance.enter_event_mode();
                 ended = theirs.handle_events();
                 let found = theirs.host.get("breakdown_time");
@@ -298,5 +305,82 @@ fn the_phase_runs_on_through_a_changed_frequency() {
         host.set("f_ac", frequency).expect("a frequency");
         let after = host.get("supply_voltage");
         assert!((after - before).abs() < 1e-9, "{k}: {before} {after}");
+    }
+}
+
+/// The typical sizes of the states follow from parameters that can be tuned: the host is told at the next event.
+#[test]
+fn nominals_that_change_are_announced() {
+    let mut host = Integrator::begun(&[]).host;
+    let announced = |host: &mut Host| {
+        host.instance.enter_event_mode();
+        let update = host.instance.new_discrete_states().expect("an update");
+        update.nominals_changed
+    };
+    let nominals = |host: &Host| {
+        let mut nominals = [0.0; STATES];
+        host.instance
+            .nominals_of_states(&mut nominals)
+            .expect("nominals");
+        nominals
+    };
+    let before = nominals(&host);
+    host.set("eta", 0.01).expect("legal");
+    assert!(!announced(&mut host) && nominals(&host) == before);
+    host.set("L", 2e-3).expect("legal");
+    assert!(nominals(&host) != before);
+    assert!(announced(&mut host));
+    assert!(!announced(&mut host));
+}
+
+/// A state may jump in event mode only: between events the host would overwrite it, and the charge would be lost.
+#[test]
+fn a_resistance_is_switched_on_in_event_mode_only() {
+    let mut host = Integrator::begun(&[]).host;
+    let charge = host.get("charge");
+    let fault = host.set("R_s", 1e5).expect_err("a jump");
+    assert!(
+        fault.text.contains("R_s = 100000 cannot be set"),
+        "{fault:?}"
+    );
+    assert!(fault.text.contains("event mode"), "{fault:?}");
+    host.instance.enter_event_mode();
+    host.set("R_s", 1e5).expect("a resistance");
+    assert!((host.get("charge_state") / charge - 1.0).abs() < 1e-14);
+    host.instance.enter_continuous_time();
+    host.set("R_s", 2e5).expect("no jump");
+}
+
+/// Held at breakdown, the stretch is still a state that the host sets, and results follow it; at a limit of the stretch
+/// they do not.
+#[test]
+fn derivatives_of_a_held_actuator_are_those_of_what_is_read() {
+    for (settings, follows) in [
+        ([("E_breakdown", 62e6), ("on_breakdown_number", 2.0)], true),
+        ([("lambda_max", 1.01), ("terminate_on_pull_in", 0.0)], false),
+    ] {
+        let mut integrator = Integrator::begun(&settings);
+        while integrator.host.time < 1e-6 {
+            if integrator.step(1e-9) {
+                integrator.host.instance.enter_event_mode();
+                integrator.handle_events();
+            }
+        }
+        let host = &mut integrator.host;
+        assert_eq!(host.get("lambda_dot"), 0.0);
+        let (state, result) = (row("lambda").0, row("charge").0);
+        let mut slope = f64::NAN;
+        host.instance
+            .directional_derivative(&[result], &[state], &[1.0], |_, value| slope = value)
+            .expect("a derivative");
+        let at = host.get("lambda");
+        let mut charge = |stretch: f64| {
+            host.set("lambda", stretch).expect("a state");
+            host.get("charge")
+        };
+        let quotient = (charge(at + 1e-5) - charge(at - 1e-5)) / 2e-5;
+        assert_eq!(quotient != 0.0, follows);
+        let error = (slope - quotient).abs();
+        assert!(error <= 1e-8 * quotient.abs(), "{slope} {quotient}");
     }
 }

@@ -273,7 +273,7 @@ fn saved_instances_go_on_bit_for_bit() {
 fn a_parameter_without_effect_does_not_tell_a_restored_instance() {
     let settings = [("J_m", 60.0), ("eta", 0.01)];
     for (name, value) in [
-        ("kappa2", 0.02),
+        ("J_2", 60.0),
         ("tau_2", 3.0),
         ("n_breakdown", 1.0),
         ("voltage", 500.0),

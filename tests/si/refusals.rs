@@ -177,7 +177,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
                 host.step(1e-7);
             }
         }
-        for (name, value) in [("J_m", 0.5), ("k1", -3.0)] {
+        for (name, value, part) in [("J_m", 0.5, "lambda = 1."), ("k1", -3.0, "permittivity")] {
             let before = host.get(name);
             let saved = host.instance.save(Saved::default()).expect("a state");
             let fault = host.set(name, value).expect_err(name);
@@ -185,7 +185,7 @@ fn a_parameter_that_does_not_go_with_the_present_is_refused() {
                 fault.text.contains(&format!("{name} = {value}")),
                 "{fault:?}"
             );
-            assert!(fault.text.contains("lambda = 1."), "{fault:?}");
+            assert!(fault.text.contains(part), "{fault:?}");
             assert_eq!(host.get(name), before);
             assert_eq!(
                 host.instance.save(Saved::default()).expect("a state"),
@@ -286,4 +286,88 @@ fn a_step_that_ends_at_once_does_not_lead_back_in_time() {
             "{step:e}: {reached:e}"
         );
     }
+}
+
+/// A field that is beyond breakdown at the start broke down at the start time, in both interfaces and in each phase.
+#[test]
+fn a_breakdown_at_the_start_is_at_the_start_time() {
+    for interface in [Interface::CoSimulation, Interface::ModelExchange] {
+        let mut host = Host::initializing(interface, &[("E_breakdown", 1e6)]);
+        for begun in [false, true] {
+            if begun {
+                host.instance.exit_initialization().expect("a start");
+            }
+            assert_eq!(host.get("broken_down"), 1.0, "{interface:?} {begun}");
+            assert_eq!(host.get("breakdown_time"), 0.0);
+        }
+    }
+    for choice in [2.0, 3.0] {
+        let mut host = Host::begun(&[("E_breakdown", 1e6), ("on_breakdown", choice)]);
+        let ends = host.instance.do_step(0.0, 1e-7).is_err();
+        assert_eq!(ends, choice == 3.0);
+        assert_eq!(host.get("breakdown_time"), 0.0, "{choice}");
+    }
+}
+
+/// What the start refuses is refused later too, and the setting is named that it comes from.
+#[test]
+fn settings_that_exclude_each_other_are_refused_at_any_time() {
+    type Settings = &'static [(&'static str, f64)];
+    let cases: [(Settings, Settings, &str); 6] = [
+        (
+            &[],
+            &[("k1", -10.0)],
+            "k1 = -10 cannot be set: k1 = -10, k2",
+        ),
+        (
+            &[("kappa2", 0.1)],
+            &[("J_m", 100.0)],
+            "J_m = 100 cannot be set: J_m = 100 chooses",
+        ),
+        (
+            &[("J_m", 100.0)],
+            &[("kappa2", 0.1), ("rho", 1200.0)],
+            "kappa2 = 0.1 cannot be set",
+        ),
+        (
+            &[("source", 3.0)],
+            &[("V_ac", 100.0)],
+            "V_ac = 100 cannot be set: V_ac = 100 V is added",
+        ),
+        (
+            &[],
+            &[("E_conduction", 1e4), ("sigma", 1e-6)],
+            "sigma = 1e-6 cannot be set: E_conduction = 10000 V/m is out of proportion",
+        ),
+        // Each alone is refused, both together are not.
+        (&[("J_m", 100.0)], &[("kappa2", 0.1), ("J_m", 0.0)], ""),
+    ];
+    for (start, tuned, part) in cases {
+        let mut host = Host::begun(start);
+        host.step(1e-7);
+        let names: Vec<u32> = tuned.iter().map(|(name, _)| row(name).0).collect();
+        let before: Vec<f64> = tuned.iter().map(|(name, _)| host.get(name)).collect();
+        let set = host
+            .instance
+            .set(Type::Real, &names, |place| tuned[place].1);
+        if part.is_empty() {
+            set.expect("settings that go with each other");
+            continue;
+        }
+        let fault = set.expect_err(part);
+        assert!(fault.text.contains(part), "{}", fault.text);
+        let after: Vec<f64> = tuned.iter().map(|(name, _)| host.get(name)).collect();
+        assert_eq!(before, after);
+    }
+    // The permittivity is looked at before the field, which it decides.
+    let values = [("k1", -8.0), ("lambda_start", 1.125), ("source", 3.0)];
+    let mut host = Host::initializing(Interface::CoSimulation, &values);
+    host.set("sigma", 1e-9).expect("legal");
+    host.set("E_conduction", 1e6).expect("legal");
+    let text = host
+        .instance
+        .exit_initialization()
+        .expect_err("no charge holds")
+        .text;
+    assert!(text.contains("k1 = -8"), "{text}");
 }

@@ -90,7 +90,7 @@ const FORCED: Dependencies = depends(
 );
 
 /// Of charge, membrane voltage and field.
-const CHARGED: Dependencies = depends(
+pub(super) const CHARGED: Dependencies = depends(
     &["voltage", "charge_imposed", "lambda", "charge_state"],
     &[
         "voltage",

@@ -1,6 +1,7 @@
 //! Energies, thresholds, margins, and what has happened.
 
 use super::Row;
+use super::ports::CHARGED;
 use crate::arithmetic::number::Number;
 use crate::model::variables::Causality::{Local, Output};
 use crate::model::variables::rows::{
@@ -22,6 +23,20 @@ const AT_EVENTS: Option<Derivatives<Si>> = Some(Derivatives {
 });
 
 const EXTREMES: [Row; 4] = extremes();
+
+/// Of breakdown at the start: what the field depends on, and what it is held against.
+const CHOSEN_AND_CHARGED: [&str; 4 + CHARGED.at_start.len()] = {
+    let mut all = [""; 4 + CHARGED.at_start.len()];
+    let (chosen, charged) = all.split_at_mut(4);
+    chosen.copy_from_slice(&[
+        "E_breakdown",
+        "n_breakdown",
+        "on_breakdown",
+        "on_breakdown_number",
+    ]);
+    charged.copy_from_slice(CHARGED.at_start);
+    all
+};
 
 /// The results that are only read.
 pub(super) const VALUES: [Row; 34] = [
@@ -302,6 +317,6 @@ pub(super) const VALUES: [Row; 34] = [
         Output,
         real(0.0, 1.0, 1.0),
         (|view| flag(view.breakdown_time() < f64::INFINITY), AT_EVENTS),
-        depends(&[], &[]),
+        depends(&[], &CHOSEN_AND_CHARGED),
     )
     .at_events(),];
