@@ -238,3 +238,25 @@ proptest! {
         }
     }
 }
+
+/// A drive many times faster than the motion: steps must not fall together with its periods.
+#[test]
+fn fast_drives_are_seen_as_they_are() {
+    let scenes: Vec<Scene> = (0..400)
+        .map(|k| {
+            let mut scene = alternating([0.0, 0.0, 0.2], 0.4, 8.0 + 0.1 * f64::from(k));
+            scene.parameters.aspect = 100.0;
+            scene.drive.voltage.set_value(0.2);
+            scene.drive.harmonic.phase = 0.7;
+            scene
+        })
+        .collect();
+    for tolerance in [1e-4, 1e-6] {
+        let found = follow(&scenes, 100.0, tolerance);
+        for (scene, found) in scenes.iter().zip(found) {
+            let error = difference(&found.expect("a motion"), &exact(scene, 100.0));
+            let frequency = scene.drive.harmonic.frequency;
+            assert!(error < 100.0 * tolerance, "{frequency}: {error:e}");
+        }
+    }
+}

@@ -82,6 +82,7 @@ pub fn motion(case: &Case) -> Motion {
     drive.harmonic = Harmonic {
         amplitude: case.amplitude,
         frequency: case.frequency,
+        frequency_rest: 0.0,
         phase: 0.0,
     };
     Motion {

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 pub use super::harmonic::Harmonic;
-use super::harmonic::TURN;
+pub(crate) use super::harmonic::TURN;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::jet::Dual;
 use crate::arithmetic::number::Number;
@@ -140,17 +140,20 @@ impl Drive {
 
     /// Gives the alternating voltage another frequency from now on, the time from
     /// which the inputs count; its phase runs on from where it is.
-    pub fn retune(&mut self, frequency: f64) {
+    pub fn retune(&mut self, frequency: DoubleDouble) {
         let mut carrier = Harmonic {
             phase: 0.0,
             ..self.harmonic
         };
         let before = carrier.angle(self.since);
-        carrier.frequency = frequency;
+        (carrier.frequency, carrier.frequency_rest) = (frequency.high, frequency.low);
         let lead = self.lead + (before - carrier.angle(self.since));
         let turns = (lead * (1.0 / TURN.high)).round();
         self.lead = (lead - turns * TURN.high) - turns * TURN.low;
-        self.harmonic.frequency = frequency;
+        self.harmonic = Harmonic {
+            phase: self.harmonic.phase,
+            ..carrier
+        };
     }
 
     /// Whether its numbers are finite, but for the settings of the alternating voltage.
@@ -158,6 +161,7 @@ impl Drive {
     pub fn is_finite(&self) -> bool {
         self.since.value().is_finite()
             && self.lead.is_finite()
+            && self.harmonic.frequency_rest.is_finite()
             && self.voltage.is_finite()
             && self.prestress.is_finite()
     }
@@ -408,6 +412,7 @@ mod tests {
         drive.harmonic = Harmonic {
             amplitude: 1.0,
             frequency: 0.25,
+            frequency_rest: 0.0,
             phase: 0.5,
         };
         // Sums of steps and of frequencies of few bits, so that nothing is rounded
@@ -416,7 +421,7 @@ mod tests {
         for k in 0..100_000_u32 {
             let frequency = 0.125 + f64::from(k % 64) / 64.0;
             drive.since = DoubleDouble::new(time);
-            drive.retune(frequency);
+            drive.retune(DoubleDouble::new(frequency));
             angle = angle.plus(0.375 * frequency);
             time += 0.375;
             let turns = (angle.high / TURN.high).round();

@@ -6,7 +6,7 @@ use crate::arithmetic::double_double::{DoubleDouble, veltkamp_split};
 use crate::arithmetic::number::Number;
 
 /// 2π.
-pub(super) const TURN: DoubleDouble = DoubleDouble {
+pub(crate) const TURN: DoubleDouble = DoubleDouble {
     high: std::f64::consts::TAU,
     low: 2.449_293_598_294_706_4e-16,
 };
@@ -18,6 +18,8 @@ pub struct Harmonic {
     pub amplitude: f64,
     /// ω in radians per unit of time.
     pub frequency: f64,
+    /// What rounding has left of ω, where it is not exactly `frequency`: it counts after many turns.
+    pub frequency_rest: f64,
     /// ϑ in radians.
     pub phase: f64,
 }
@@ -27,6 +29,7 @@ impl Harmonic {
     pub const OFF: Harmonic = Harmonic {
         amplitude: 0.0,
         frequency: 0.0,
+        frequency_rest: 0.0,
         phase: 0.0,
     };
 
@@ -42,7 +45,8 @@ impl Harmonic {
             let turns = turns.whole();
             let [time_head, time_tail] = veltkamp_split(time.high);
             let [head, tail] = veltkamp_split(self.frequency);
-            let rest = (time_head * tail + (time_tail + time.low) * self.frequency) + self.phase;
+            let rest = (time_head * tail + (time_tail + time.low) * self.frequency)
+                + (time.high * self.frequency_rest + self.phase);
             ((time_head * head - turns * PARTS[0]) - turns * PARTS[1]) + rest
         } else {
             self.late_angle(time)
@@ -52,7 +56,10 @@ impl Harmonic {
     /// The angle after more turns than the fast way can reduce.
     #[inline(never)]
     fn late_angle(&self, time: DoubleDouble) -> f64 {
-        let angle = time.scale(self.frequency);
+        let angle = time.mul(DoubleDouble {
+            high: self.frequency,
+            low: self.frequency_rest,
+        });
         let turns = (angle.high * (1.0 / TURN.high)).round();
         angle.sub(TURN.scale(turns)).value() + self.phase
     }
@@ -67,6 +74,7 @@ mod tests {
         let harmonic = Harmonic {
             amplitude: 1.0,
             frequency: 0.1471,
+            frequency_rest: 0.0,
             phase: 0.3,
         };
         // A million turns later, to the rounding of the time itself.

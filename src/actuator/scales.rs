@@ -151,6 +151,12 @@ impl Scales {
         seconds.mul(self.exact_frequency)
     }
 
+    /// The nondimensional time that a second takes.
+    #[must_use]
+    pub fn exact_frequency(&self) -> DoubleDouble {
+        self.exact_frequency
+    }
+
     /// Whether the numbers can be scales: to be checked where they do not come from this process.
     #[must_use]
     pub fn are_valid(&self) -> bool {

@@ -180,10 +180,12 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
             limits,
             ..
         } = &self.motions[lane.motion];
-        let frequency = equation.seen_from(&self.start).natural_frequency(state);
+        let local = equation.seen_from(&self.start);
+        let frequency = local.natural_frequency(state);
         // As long as the method is stable; at a tight tolerance less, by experience.
         let by_error = (self.tolerance / 1e-7).powf(1.0 / Falkner::<POINTS>::FALL);
         let free = Falkner::<POINTS>::STABLE / frequency * by_error.min(1.0);
+        let free = free.min(longest_step(&local));
         let rest = self.end.since(lane.time);
         let looked_back = (POINTS - 1) as f64;
         let blocks = ((rest / free - looked_back) / BLOCK as f64).ceil();
@@ -347,7 +349,8 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         let stable = stable_step(stiffness);
         if ratio < IDLE_CORRECTION && 1.4 * step < stable {
             let growth = (0.85 * ratio.max(1e-30).powf(-1.0 / Falkner::<POINTS>::FALL)).min(2.0);
-            let longer = (growth * step).min(0.95 * stable);
+            let local = self.motions[lane.motion].equation.seen_from(&lane.time);
+            let longer = (growth * step).min(0.95 * stable).min(longest_step(&local));
             let history = [HISTORY + BLOCK - 1, known + BLOCK];
             return self.change(lane, ensemble, packed, index, history, longer)
                 || self.go_alone(lane, extremes, state);
@@ -387,4 +390,10 @@ impl<'a, const POINTS: usize, E: Equation> Queue<'a, POINTS, E> {
         });
         false
     }
+}
+
+/// The longest step in which the load is seen as it is: 2π steps to its period. In a longer one the steps may fall together
+/// with the periods, and the miss of a step vanishes.
+fn longest_step(local: &impl LocalEquation) -> f64 {
+    1.0 / local.load_frequency()
 }

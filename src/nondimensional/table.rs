@@ -1,6 +1,7 @@
 //! The variables of the nondimensional actuator.
 
 use super::Nondimensional;
+use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::number::Number;
 use crate::model::AtLimit;
 use crate::model::variables::rows::{
@@ -126,7 +127,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
         |scene| scene.drive.harmonic.frequency,
         |scene, value| scene.drive.harmonic.frequency = value,
     )
-    .from_now_on(|scene, value| scene.drive.retune(value))
+    .from_now_on(|scene, value| scene.drive.retune(DoubleDouble::new(value)))
     .converted(FREQUENCY)
     .in_unit(&units::ANGULAR_FREQUENCY),
     Row::parameter(

@@ -6,7 +6,7 @@ use super::folded::Memory;
 use super::thresholds::Thresholds;
 use crate::actuator::Drive;
 use crate::actuator::device::{Device, DeviceMotion, Source};
-use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial};
+use crate::actuator::drive::{HIGHEST_DERIVATIVE, Harmonic, Polynomial, TURN};
 use crate::actuator::scales::{Scales, SiDevice, SiElasticity};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::arithmetic::jet::Jet;
@@ -172,9 +172,9 @@ impl SiScene {
     pub fn retune(&mut self, frequency: f64) {
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = self.since;
-        drive.harmonic.frequency = std::f64::consts::TAU * self.alternating[1];
+        drive.retune(TURN.scale(self.alternating[1]));
         drive.lead = self.lead;
-        drive.retune(std::f64::consts::TAU * frequency);
+        drive.retune(TURN.scale(frequency));
         self.lead = drive.lead;
         self.alternating[1] = frequency;
     }
@@ -210,9 +210,11 @@ impl SiScene {
         drive.voltage = scaled(self.source_input(), 1.0 / unit, time);
         drive.prestress = scaled(&self.force, 1.0 / scales.force, time);
         if alternates {
+            let turning = TURN.scale(frequency).div(scales.exact_frequency());
             drive.harmonic = Harmonic {
                 amplitude: amplitude / unit,
-                frequency: std::f64::consts::TAU * frequency * time,
+                frequency: turning.high,
+                frequency_rest: turning.low,
                 phase,
             };
             drive.lead = self.lead;

@@ -125,3 +125,60 @@ fn input_derivatives_set_early_count_from_the_start_time() {
     }
     assert!((host.get("phi") - (0.25 + 0.125 * 1.92)).abs() < 1e-15);
 }
+
+/// A built-in voltage of frequency 0 holds its phase: it is a part of a constant voltage, in steps of all kinds.
+#[test]
+fn a_drive_of_frequency_0_adds_its_sine() {
+    let start = |name: &str, value: f64| {
+        let host = Host::in_phase("initialization");
+        for (name, value) in [("c", 100.0), ("E_s", 0.2), (name, value)] {
+            assert_eq!(host.set(name, value), OK);
+        }
+        host
+    };
+    let sine = 0.3 * 1.0_f64.sin();
+    for step in [0.01, 0.3, 3.0, 8.0] {
+        let (driven, plain) = (start("phi_ac", 0.3), start("phi_ac", 0.0));
+        assert_eq!(driven.set("omega_ac", 0.0), OK);
+        assert_eq!(driven.set("phase_ac", 1.0), OK);
+        for host in [&driven, &plain] {
+            assert_eq!(unsafe { fmi2ExitInitializationMode(host.component) }, OK);
+        }
+        for k in 0..40 {
+            let phi = 0.2 + 0.05 * f64::from(k).sin();
+            assert_eq!(driven.set("phi", phi), OK);
+            assert_eq!(plain.set("phi", phi + sine), OK);
+            for host in [&driven, &plain] {
+                assert_eq!(host.step(host.time(), step), OK);
+            }
+            let [ours, theirs] = [&driven, &plain].map(|host| host.get("lambda"));
+            assert!((ours - theirs).abs() < 1e-8, "{step}: {ours} {theirs}");
+        }
+    }
+}
+
+/// A drive that is tuned to a stop keeps the voltage at which it has stopped, in long steps as in short ones.
+#[test]
+fn a_drive_tuned_to_a_stop_keeps_its_voltage() {
+    let long = Host::in_phase("stepping");
+    for (name, value) in [("phi", 0.2), ("phi_ac", 0.3), ("omega_ac", 0.1)] {
+        assert_eq!(long.set(name, value), OK);
+    }
+    assert_eq!(long.step(0.0, 12.0), OK);
+    assert_eq!(long.set("omega_ac", 0.0), OK);
+    let stopped = long.get("phi_total");
+    assert!((stopped - 0.2 - 0.3 * 1.2_f64.sin()).abs() < 1e-15);
+    let short = Host::new();
+    assert_eq!(short.restored(&long.serialized()), OK);
+    for k in 0..20 {
+        for (host, steps) in [(&long, 1), (&short, 300)] {
+            assert_eq!(host.set("S", 1e-3 * f64::from(k)), OK);
+            for _ in 0..steps {
+                assert_eq!(host.step(host.time(), 3.0 / f64::from(steps)), OK);
+            }
+            assert_eq!(host.get("phi_total"), stopped);
+        }
+        let [ours, theirs] = [&long, &short].map(|host| host.get("lambda"));
+        assert!((ours - theirs).abs() < 1e-7, "{ours} {theirs}");
+    }
+}

@@ -104,6 +104,7 @@ pub fn drive(
         harmonic: Harmonic {
             amplitude: unit * amplitude,
             frequency: frequency / period,
+            frequency_rest: 0.0,
             phase: 0.3,
         },
     }

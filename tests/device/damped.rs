@@ -30,6 +30,7 @@ fn motion(inertia: f64, damping: Damping, voltage: f64, alternating: f64) -> Dev
     drive.harmonic = Harmonic {
         amplitude: alternating,
         frequency: 1.7 / (inertia + 2.0).sqrt(),
+        frequency_rest: 0.0,
         phase: 0.4,
     };
     DeviceMotion {

@@ -122,6 +122,7 @@ impl Scene {
             drive.harmonic = Harmonic {
                 amplitude: get("V_ac") / scales.voltage,
                 frequency: std::f64::consts::TAU * get("f") * scales.time,
+                frequency_rest: 0.0,
                 phase: 0.0,
             };
         }

@@ -3,7 +3,9 @@
 mod at_once;
 mod dependencies;
 mod derivatives;
+mod drive;
 mod exchange;
+mod field;
 mod host;
 mod instant;
 mod integrator;

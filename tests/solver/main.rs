@@ -46,6 +46,7 @@ fn alternating(surface: [f64; 3], amplitude: f64, frequency: f64) -> Motion {
     motion.drive.harmonic = Harmonic {
         amplitude,
         frequency,
+        frequency_rest: 0.0,
         phase: 0.0,
     };
     motion

@@ -51,6 +51,7 @@ fn motion(actuator: &Actuator, load: &Load) -> Motion {
     drive.harmonic = Harmonic {
         amplitude,
         frequency,
+        frequency_rest: 0.0,
         phase,
     };
     Motion {

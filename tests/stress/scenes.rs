@@ -176,11 +176,12 @@ impl Author<'_> {
             Kind::FastDrive => [0.3, 2.5],
             _ => [-1.0, 2.9],
         };
-        [
-            self.random.between(0.05, 0.5),
-            10_f64.powf(self.random.between(powers[0], powers[1])) / self.unit,
-            self.random.between(-3.0, 3.0),
-        ]
+        let amplitude = self.random.between(0.05, 0.5);
+        let frequency = 10_f64.powf(self.random.between(powers[0], powers[1])) / self.unit;
+        let phase = self.random.between(-3.0, 3.0);
+        // One of eight stands still.
+        let stands_still = !matches!(kind, Kind::FastDrive) && phase > 2.25;
+        [amplitude, if stands_still { 0.0 } else { frequency }, phase]
     }
 
     /// A step of 10 to a power between these, in units of the time scale.

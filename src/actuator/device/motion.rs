@@ -91,12 +91,13 @@ impl CoupledEquation for DeviceMotion {
         self.device.damping.is_none() && self.states() == 0
     }
 
-    /// Without a locking stretch.
+    /// Without a locking stretch, and without a leak that bends where the voltage changes its sign.
     fn is_regular(&self) -> bool {
         let device = &self.device;
         let mut branches = device.present_branches();
         !matches!(device.elasticity, Elasticity::Gent(_))
             && branches.all(|branch| branch.limit.is_infinite())
+            && !(device.has_charge_state() && device.port.leak_bends())
     }
 
     fn awaits_event(&self) -> bool {
@@ -212,6 +213,14 @@ impl LocalCoupledEquation for LocalDevice<'_> {
         let permittivity =
             device.permittivity.is_constant() || device.permittivity.at(stretch)[0] > 0.0;
         stretch > 0.0 && elastic && branches && permittivity
+    }
+
+    /// Where the exponential leak goes through a voltage of 0, the third derivative of the charge jumps.
+    fn bends_between(&self, begin: &Stage, end: &Stage) -> bool {
+        let device = self.device;
+        device.has_charge_state()
+            && device.port.leak_bends()
+            && begin.internal[0] * end.internal[0] <= 0.0
     }
 
     /// How far the true field is below that of breakdown.

@@ -97,6 +97,15 @@ pub struct Port<P = f64> {
     pub conduction_field: P,
 }
 
+impl Port {
+    /// Whether the current of the leak, σ̄ E exp(|E|/Ē_c), bends where the field E changes its sign: its second derivative
+    /// jumps there.
+    #[must_use]
+    pub fn leak_bends(&self) -> bool {
+        self.conductivity > 0.0 && self.conduction_field.is_finite()
+    }
+}
+
 /// The breakdown field E_b λⁿ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Breakdown<P = f64> {

@@ -217,6 +217,11 @@ pub trait LocalCoupledEquation {
     /// Whether the equation is defined here.
     fn admits(&self, stage: &Stage) -> bool;
 
+    /// Whether f or z' is less smooth than elsewhere at some stage between these two.
+    fn bends_between(&self, _begin: &Stage, _end: &Stage) -> bool {
+        false
+    }
+
     /// The margin that vanishes where the event besides the limits happens.
     fn margin(&self, _offset: f64, _stage: &Stage) -> f64 {
         f64::INFINITY

@@ -101,32 +101,32 @@ impl Step {
     /// The largest error between begin and end in units of the sizes: the part of a slope after
     /// its last coefficient, once or twice integrated. On Gauss nodes the coefficients are taken to go on falling
     /// as they do up to there; on Radau nodes what follows fast is no more accurate than its last
-    /// coefficient.
-    pub fn error(&self, sizes: &Sizes, integrals: usize) -> f64 {
+    /// coefficient, and neither is a slope that `bends`.
+    pub fn error(&self, sizes: &Sizes, integrals: usize, bends: bool) -> f64 {
         let half = self.series.half;
         let degree = 2.0 * self.nodes as f64;
         let once = half / degree;
-        let motion = self.neglected(&self.series.motion);
+        let motion = self.neglected(&self.series.motion, bends);
         let mut error =
             (once * motion / sizes.rate).max(once * half / degree * motion / sizes.position);
         for (series, size) in self.series.internal.iter().zip(sizes.internal) {
             if size > 0.0 {
-                error = error.max(once * self.neglected(series) / size);
+                error = error.max(once * self.neglected(series, bends) / size);
             }
         }
         if sizes.integrals > 0.0 {
             for series in &self.powers[..integrals] {
-                error = error.max(once * self.neglected(series) / sizes.integrals);
+                error = error.max(once * self.neglected(series, bends) / sizes.integrals);
             }
         }
         error
     }
 
-    fn neglected(&self, series: &LegendreCoefficients) -> f64 {
+    fn neglected(&self, series: &LegendreCoefficients, bends: bool) -> f64 {
         let n = self.nodes;
         let last = series[n - 1].abs() + series[n - 2].abs();
         let before = series[n - 3].abs() + series[n - 4].abs();
-        if last == 0.0 || self.stiff {
+        if last == 0.0 || self.stiff || bends {
             return last;
         }
         // NaN where both vanish was excluded; a rising series is as large as its last terms.

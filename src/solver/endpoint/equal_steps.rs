@@ -76,12 +76,14 @@ impl<const K: usize> EndpointSteps<K> {
         let length = *length;
         let half = 0.5 * length;
         let square = half * half;
-        let [frequency, angle] = local.harmonic().unwrap_or_default();
-        let alternates = frequency != 0.0;
-        let mut phase = match alternates {
-            true => sine_and_cosine(simd, angle),
-            false => [0.0; 2],
+        let harmonic = local.harmonic();
+        let mut phase = match harmonic {
+            Some([_, angle]) => sine_and_cosine(simd, angle),
+            None => [0.0; 2],
         };
+        // A frequency of 0 holds the phase, and with it a part of the voltage.
+        let frequency = harmonic.map_or(0.0, |[frequency, _]| frequency);
+        let alternates = frequency != 0.0;
         let splat = |value: f64| f64x4::splat(simd, value);
         let load = local.load_with_sine(splat(0.0), splat(phase[0]));
         let here = in_lanes(simd, &way.state);
@@ -165,7 +167,7 @@ impl<const K: usize> EndpointSteps<K> {
             let offset = plan.offset(simd, taken * length);
             let sine = match alternates {
                 true => plan.sine(simd, phase),
-                false => [splat(0.0); 2],
+                false => [splat(phase[0]); 2],
             };
             let loads = [
                 local.load_with_sine(offset[0], sine[0]),

@@ -59,6 +59,13 @@ fn first_below(
             }
             return Some(crossing(at(i - 1), at(i), |t| margin(segment, t)));
         }
+        // So may one beside an end, where the points rise from it on.
+        if i == 2 && is_deep_beside([values[0], values[1], values[2]]) {
+            let lowest = lowest_between(at(0), at(1), |t| margin(segment, t));
+            if margin(segment, lowest) <= 0.0 {
+                return Some(crossing(at(0), lowest, |t| margin(segment, t)));
+            }
+        }
         // A dip between three points may go below 0 and come back; that of a parabola is an eighth as deep as its ends
         // are high.
         let is_deep = |middle: f64, ends: f64| 3.0 * middle <= ends;
@@ -73,5 +80,17 @@ fn first_below(
             }
         }
     }
+    if is_deep_beside([values[PARTS], values[PARTS - 1], values[PARTS - 2]]) {
+        let lowest = lowest_between(at(PARTS - 1), at(PARTS), |t| margin(segment, t));
+        if margin(segment, lowest) <= 0.0 {
+            return Some(crossing(at(PARTS - 1), lowest, |t| margin(segment, t)));
+        }
+    }
     None
+}
+
+/// Whether the parabola through an end and the two points next to it may have a dip between the first two that is half as
+/// deep as the end is high. That of a parabola is an eighth of its second difference deep at most.
+fn is_deep_beside([end, next, third]: [f64; 3]) -> bool {
+    end <= next && 4.0 * end <= end - 2.0 * next + third
 }

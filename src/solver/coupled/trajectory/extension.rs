@@ -198,7 +198,8 @@ impl Trajectory {
                 internal: sizes.internal.map(|size| part * size),
                 ..sizes
             };
-            let ratio = step.error(&here, demands.integrals) / tolerance;
+            let bends = local.bends_between(&start.stage(), &step.end.stage());
+            let ratio = step.error(&here, demands.integrals, bends) / tolerance;
             let order = (step.nodes + 1) as f64;
             // Where the error allows much longer steps, Newton's method takes them.
             let effort = if ratio < MUCH_LONGER.powf(-order) {
