@@ -113,11 +113,11 @@ install-tests $(CHECKS) lint-all audit bless test-platforms test-mosaik stress s
 fuzz bench bench-device env clean
 
 help:
-	@echo 'make run             build and pack target/fmu/DielectricElastomerActuator.fmu, run the demonstration'
+	@echo 'make run             build and pack both FMUs into target/fmu, run the demonstration'
 	@echo 'make paper           regenerate the figures and tables of the paper into target/paper (some minutes);'
 	@echo '                     WORKERS=2 sets the worker processes, PAPER="--frequencies 1200" further options'
 	@echo 'make examples        run the examples (examples/README.md), with their plots in target/examples'
-	@echo 'make test            run every check and test; each is a target too:'
+	@echo 'make test            run the checks and tests; each is a target too:'
 	@printf '                     %s\n' '$(CHECKS_OF_THE_SOURCES)' \
 	'$(CHECKS_IN_PROGRAMS) $(CHECKS_IN_FMPY) $(CHECKS_OF_THE_PACKAGE)'
 	@echo 'make lint-all        the lints, with those of the benchmark and the fuzzer'
@@ -128,7 +128,7 @@ help:
 	@echo 'make fuzz            fuzz each target for FUZZ_SECONDS (60)'
 	@echo 'make bench           time the actuator and its rivals (benchmark/README.md)'
 	@echo 'make bench-device    the same for the real device in SI units (some minutes)'
-	@echo 'make fmu             build and pack the FMU only, for 64-bit Linux'
+	@echo 'make fmu             build and pack both FMUs only, for 64-bit Linux'
 	@echo 'make fmu-all         pack it for every platform that can be built for here'
 	@echo 'make native          build the native library of the Python package for 64-bit Linux'
 	@echo 'make wheel           build the Python package for every platform into target/wheel'

@@ -1,5 +1,5 @@
 //! `cargo fmu`: builds the shared library for each platform, refuses a bad one, and packs the
-//! FMU; `cargo fmu describe`: writes the checked-in `modelDescription.xml`.
+//! FMU; `cargo fmu describe`: writes the checked-in `modelDescription/*.xml`.
 #![forbid(unsafe_code)]
 
 mod archive;

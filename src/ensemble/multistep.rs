@@ -11,7 +11,7 @@
 //! a block carries the predicted x and x' along, and corrects them at its end.
 //!
 //! Gain over a collocation step in each lane, which needs seven evaluations of f for each unit of
-//! time where this method needs three: see `benchmark/records`, sweep.
+//! time where this method needs three: see `benchmark/records`, `ensemble.csv`.
 
 use fearless_simd::Simd;
 

@@ -97,7 +97,7 @@ def test_a_chirp_keeps_its_phase(actuator):
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12])
 def test_the_error_near_the_resonance_is_what_the_readme_says(actuator, tolerance):
-    """Local errors as the motion amplifies them: 177, 110, 18, 1 and 0.1 times these tolerances, as -rP prints."""
+    """Local errors as the motion amplifies them: 177, 110, 18, 1 and 2 times these tolerances, as -rP prints."""
     scene = {"gamma_s": 0.05, "tau_s": 0.05, "E_s": 0.2, "phi_ac": 0.3, "omega_ac": 0.1438}
     exact = 1.2282643168243128
 
@@ -112,7 +112,7 @@ def test_the_error_near_the_resonance_is_what_the_readme_says(actuator, toleranc
     assert multiple < amplification
 
 
-@pytest.mark.parametrize(("periods", "said"), [(36_704, 1.1e-11), (36_704_325, 1.3e-8)])
+@pytest.mark.parametrize(("periods", "said"), [(36_704, 1.6e-11), (36_704_325, 1.4e-8)])
 def test_a_continued_motion_is_off_by_what_the_readme_says(actuator, periods, said):
     """t = 1e6 and 1e9: the time by which it is early or late, times the largest rate of the motion."""
     period = 27.2447459677505316
