@@ -59,7 +59,7 @@ fn first_below(
             }
             return Some(crossing(at(i - 1), at(i), |t| margin(segment, t)));
         }
-        // So may one beside an end, where the points rise from it on.
+        // A dip beside the begin may go below 0 though the points rise from there on; that beside the end is looked at below.
         if i == 2 && is_deep_beside([values[0], values[1], values[2]]) {
             let lowest = lowest_between(at(0), at(1), |t| margin(segment, t));
             if margin(segment, lowest) <= 0.0 {
