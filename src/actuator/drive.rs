@@ -141,19 +141,16 @@ impl Drive {
     /// Gives the alternating voltage another frequency from now on, the time from
     /// which the inputs count; its phase runs on from where it is.
     pub fn retune(&mut self, frequency: DoubleDouble) {
-        let mut carrier = Harmonic {
+        let carrier = Harmonic {
             phase: 0.0,
             ..self.harmonic
         };
-        let before = carrier.angle(self.since);
-        (carrier.frequency, carrier.frequency_rest) = (frequency.high, frequency.low);
-        let lead = self.lead + (before - carrier.angle(self.since));
+        let [before, after] =
+            [carrier, carrier.with_frequency(frequency)].map(|carrier| carrier.angle(self.since));
+        let lead = self.lead + (before - after);
         let turns = (lead * (1.0 / TURN.high)).round();
         self.lead = (lead - turns * TURN.high) - turns * TURN.low;
-        self.harmonic = Harmonic {
-            phase: self.harmonic.phase,
-            ..carrier
-        };
+        self.harmonic = self.harmonic.with_frequency(frequency);
     }
 
     /// Whether its numbers are finite, but for the settings of the alternating voltage.

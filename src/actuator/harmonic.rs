@@ -33,6 +33,16 @@ impl Harmonic {
         phase: 0.0,
     };
 
+    /// The same voltage with another ω.
+    #[must_use]
+    pub fn with_frequency(self, frequency: DoubleDouble) -> Harmonic {
+        Harmonic {
+            frequency: frequency.high,
+            frequency_rest: frequency.low,
+            ..self
+        }
+    }
+
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
     #[inline(always)]

@@ -31,21 +31,24 @@ impl<M: Model> Instance<M> {
         let Some(scene) = scene else {
             return Ok(None);
         };
-        let refused = match self.tuned_to(&scene) {
+        let mut why = match self.tuned_to(&scene) {
             Ok(state) => return Ok((state != M::state(&self.view())).then_some(state)),
             Err(why) => why,
         };
-        // The first setting is named from which on it does not work.
-        let mut scene = self.scene.clone();
-        let mut named = None;
-        for (name, set, value) in settings {
-            set(&mut scene, value);
+        // The last setting is not to blame where those before it are refused too.
+        let settings: Vec<_> = settings.collect();
+        let mut last = settings.len() - 1;
+        while last > 0 {
+            let mut scene = self.scene.clone();
+            for (_, set, value) in &settings[..last] {
+                set(&mut scene, *value);
+            }
             match self.tuned_to(&scene) {
-                Ok(_) => named = None,
-                Err(why) => named = named.or(Some((name, value, why))),
+                Ok(_) => break,
+                Err(earlier) => (why, last) = (earlier, last - 1),
             }
         }
-        let (name, value, why) = named.unwrap_or(("a parameter", f64::NAN, refused));
+        let (name, _, value) = settings[last];
         let value = Shortest(value);
         Err(Fault::error(format!(
             "{name} = {value} cannot be set: {why}"

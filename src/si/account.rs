@@ -3,11 +3,11 @@
 use serde::{Deserialize, Serialize};
 
 use super::sample::Basis;
-use super::{OnBreakdown, REACHED, Si, SiScene, SiState};
+use super::{Si, SiScene, SiState};
 use crate::actuator::device::{Exchanged, Source};
 use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
-use crate::model::{Account, Place, View};
+use crate::model::Account;
 use crate::solver::State;
 use crate::solver::coupled::{LocalCoupledEquation, MOST_INTEGRALS, MOST_STATES, Stage};
 
@@ -142,19 +142,9 @@ impl Account<Si> for SiAccount {
     }
 }
 
-/// What can be read in a state.
-fn view_of<'a>(scene: &'a SiScene, time: &'a DoubleDouble, state: &SiState) -> View<'a, Si> {
-    View {
-        scene,
-        place: Place::of_state(*time, *state),
-        time,
-        collapse: None,
-    }
-}
-
 /// The charge on the electrodes in C, where the state is not too far out for one.
 fn charge_on_electrodes(scene: &SiScene, time: DoubleDouble, state: &SiState) -> Option<f64> {
-    let charge = view_of(scene, &time, state).charge();
+    let charge = scene.seen_in(&time, state).charge();
     charge.is_finite().then_some(charge)
 }
 
@@ -172,9 +162,7 @@ impl SiAccount {
 
     /// Whether the true field has come to breakdown, which is not recorded yet and does not end the motion.
     fn is_first_breakdown(&self, scene: &SiScene, time: DoubleDouble, state: &SiState) -> bool {
-        self.breakdown.is_none()
-            && scene.at_breakdown() == OnBreakdown::Flag
-            && scene.is_at_breakdown(&time, state, REACHED)
+        self.breakdown.is_none() && scene.flags_breakdown(&time, state)
     }
 
     /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.

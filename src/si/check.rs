@@ -1,10 +1,9 @@
 //! What no single variable can tell: whether the values at the start go with each other.
 
-use super::Si;
+use super::folded::Folded;
 use super::scene::{BRANCHES, SiScene, place};
 use crate::actuator::device::{Elasticity, Source};
 use crate::actuator::scales::Scales;
-use crate::model::{Place, View};
 use crate::shortest::Shortest;
 use crate::solver::State;
 
@@ -40,10 +39,9 @@ impl SiScene {
             }
         }
         self.check_settings()?;
-        let described = self.described();
-        self.check_size(&Scales::of(&described))?;
+        let Folded { device, scales, .. } = self.folded();
+        self.check_size(&scales)?;
         self.check_leak()?;
-        let device = described.nondimensional();
         if let Elasticity::Gent(locking) = &device.elasticity {
             let [low, high] = [locking.smallest(), locking.largest()].map(|wall| wall.value());
             if !(low < position && position < high) {
@@ -181,13 +179,10 @@ impl SiScene {
             let field = "the field voltage/H";
             return Err(self.conducts_too_much(supplied, field, "voltage and H"));
         }
-        let view = View::<Si> {
-            scene: self,
-            place: Place::of_state(self.since, self.start),
-            time: &self.since,
-            collapse: None,
-        };
-        let charged = view.electric_field().abs();
+        let charged = self
+            .seen_in(&self.since, &self.start)
+            .electric_field()
+            .abs();
         if self.overflows_in(charged) {
             let charge = match self.source() {
                 Source::Voltage if !self.folded().device.has_charge_state() => "voltage",

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::folded::{Described, Folded};
 use super::scene::{BRANCHES, OnBreakdown, SiScene, SiState};
 use super::trajectory::SiTrajectory;
-use super::{REACHED, Si, SiLimit};
+use super::{Si, SiLimit};
 use crate::actuator::device::{DeviceMotion, Elasticity, LocalDevice};
 use crate::actuator::scales::Scales;
 use crate::arithmetic::double_double::DoubleDouble;
@@ -320,9 +320,7 @@ impl Integration<Si> for SiMotion {
             breakdown: None,
             earlier: None,
         };
-        if scene.at_breakdown() == OnBreakdown::Flag
-            && scene.is_at_breakdown(time, &scene.start, REACHED)
-        {
+        if scene.flags_breakdown(time, &scene.start) {
             begun.break_down(*time);
         }
         Integration::record_anew(&mut begun, scene);

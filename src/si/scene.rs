@@ -172,7 +172,7 @@ impl SiScene {
     pub fn retune(&mut self, frequency: f64) {
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = self.since;
-        drive.retune(TURN.scale(self.alternating[1]));
+        drive.harmonic = Harmonic::OFF.with_frequency(TURN.scale(self.alternating[1]));
         drive.lead = self.lead;
         drive.retune(TURN.scale(frequency));
         self.lead = drive.lead;
@@ -213,9 +213,8 @@ impl SiScene {
             let turning = TURN.scale(frequency).div(scales.exact_frequency());
             drive.harmonic = Harmonic {
                 amplitude: amplitude / unit,
-                frequency: turning.high,
-                frequency_rest: turning.low,
                 phase,
+                ..Harmonic::OFF.with_frequency(turning)
             };
             drive.lead = self.lead;
         }

@@ -2,7 +2,7 @@
 
 use super::sample::Basis;
 use super::scene::SiScene;
-use super::{Si, SiLimit, SiState};
+use super::{OnBreakdown, REACHED, Si, SiLimit, SiState};
 use crate::actuator::device::{Exchanged, Stored};
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::{AtLimit, Model, Place, View};
@@ -12,6 +12,16 @@ use crate::solver::extremes::Extremes;
 use crate::solver::limits::Limit;
 
 impl SiScene {
+    /// What can be read in a state.
+    pub(super) fn seen_in<'a>(&'a self, time: &'a DoubleDouble, state: &SiState) -> View<'a, Si> {
+        View {
+            scene: self,
+            place: Place::of_state(*time, *state),
+            time,
+            collapse: None,
+        }
+    }
+
     /// Whether the true field of a state has come to breakdown, but for this part of the breakdown field.
     pub(super) fn is_at_breakdown(
         &self,
@@ -19,13 +29,13 @@ impl SiScene {
         state: &SiState,
         tolerance: f64,
     ) -> bool {
-        let view = View::<Si> {
-            scene: self,
-            place: Place::of_state(*time, *state),
-            time,
-            collapse: None,
-        };
-        self.device.breakdown_field > 0.0 && view.breakdown_margin_part() <= tolerance
+        self.device.breakdown_field > 0.0
+            && self.seen_in(time, state).breakdown_margin_part() <= tolerance
+    }
+
+    /// Whether a state has come to a breakdown that does not end the motion.
+    pub(super) fn flags_breakdown(&self, time: &DoubleDouble, state: &SiState) -> bool {
+        self.at_breakdown() == OnBreakdown::Flag && self.is_at_breakdown(time, state, REACHED)
     }
 }
 

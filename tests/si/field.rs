@@ -2,27 +2,32 @@
 
 use crate::host::Host;
 
+/// A film without surface effects and without a constant voltage.
+const BARE: [(&str, f64); 5] = [
+    ("rho", 1000.0),
+    ("gamma_s", 0.0),
+    ("tau_s", 0.0),
+    ("E_s", 0.0),
+    ("voltage", 0.0),
+];
+
 /// A leak that grows with the field bends where the voltage changes its sign: the steps see it.
 #[test]
 fn an_exponential_leak_through_0_keeps_the_tolerance() {
     let period = 0.34076e-3;
-    let settings = [
+    let leaky = [
         ("H", 20e-6),
         ("L", 6e-3),
         ("mu", 170e3),
         ("n_layers", 1.0),
-        ("rho", 1000.0),
         ("eps_r", 4.0),
-        ("gamma_s", 0.0),
-        ("tau_s", 0.0),
-        ("E_s", 0.0),
-        ("voltage", 0.0),
         ("V_ac", 800.0),
         ("f_ac", 3825.0),
         ("R_s", 2.25e6),
         ("sigma", 7.6e-10),
         ("E_conduction", 1.45e7),
     ];
+    let settings = [&BARE[..], &leaky].concat();
     let mut exact = Host::begun_with(1e-13, &settings);
     let mut hosts =
         [1e-8, 1e-10].map(|tolerance| (tolerance, Host::begun_with(tolerance, &settings)));
@@ -45,24 +50,21 @@ fn an_exponential_leak_through_0_keeps_the_tolerance() {
 /// The field is largest a moment after the start, between the first two points at which a step is looked at.
 #[test]
 fn a_breakdown_at_the_begin_of_a_step_is_not_missed() {
-    let mut settings = vec![
+    let damped = [
         ("H", 50e-6),
         ("L", 20e-3),
         ("mu", 300e3),
         ("eps_r", 3.0),
-        ("rho", 1000.0),
-        ("gamma_s", 0.0),
-        ("tau_s", 0.0),
-        ("E_s", 0.0),
-        ("voltage", 0.0),
         ("V_ac", 1500.0),
         ("eta", 30.0),
         ("force", -0.1),
     ];
     for (frequency, lead) in [(1e3, 0.01), (3e3, 0.03), (6e3, 0.05), (14e3, 0.05)] {
-        settings.truncate(12);
-        settings.push(("f_ac", frequency));
-        settings.push(("phase_ac", std::f64::consts::FRAC_PI_2 - lead));
+        let driven = [
+            ("f_ac", frequency),
+            ("phase_ac", std::f64::consts::FRAC_PI_2 - lead),
+        ];
+        let mut settings = [&BARE[..], &damped, &driven].concat();
         let peak = lead / std::f64::consts::TAU / frequency;
         let mut host = Host::begun(&settings);
         let before = host.get("electric_field");

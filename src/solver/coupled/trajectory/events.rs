@@ -50,6 +50,10 @@ fn first_below(
     margin: impl Fn(&Segment, f64) -> f64,
 ) -> Option<f64> {
     let at = |i: usize| i as f64 / PARTS as f64 * until;
+    let below_in_dip = |from: f64, to: f64| {
+        let lowest = lowest_between(from, to, |t| margin(segment, t));
+        (margin(segment, lowest) <= 0.0).then(|| crossing(from, lowest, |t| margin(segment, t)))
+    };
     let mut values = [0.0; PARTS + 1];
     for i in 0..=PARTS {
         values[i] = margin(segment, at(i));
@@ -60,11 +64,11 @@ fn first_below(
             return Some(crossing(at(i - 1), at(i), |t| margin(segment, t)));
         }
         // A dip beside the begin may go below 0 though the points rise from there on; that beside the end is looked at below.
-        if i == 2 && is_deep_beside([values[0], values[1], values[2]]) {
-            let lowest = lowest_between(at(0), at(1), |t| margin(segment, t));
-            if margin(segment, lowest) <= 0.0 {
-                return Some(crossing(at(0), lowest, |t| margin(segment, t)));
-            }
+        if i == 2
+            && is_deep_beside([values[0], values[1], values[2]])
+            && let Some(offset) = below_in_dip(at(0), at(1))
+        {
+            return Some(offset);
         }
         // A dip between three points may go below 0 and come back; that of a parabola is an eighth as deep as its ends
         // are high.
@@ -73,20 +77,15 @@ fn first_below(
             && values[i - 1] <= values[i - 2]
             && values[i - 1] <= values[i]
             && is_deep(values[i - 1], values[i - 2] + values[i])
+            && let Some(offset) = below_in_dip(at(i - 2), at(i))
         {
-            let lowest = lowest_between(at(i - 2), at(i), |t| margin(segment, t));
-            if margin(segment, lowest) <= 0.0 {
-                return Some(crossing(at(i - 2), lowest, |t| margin(segment, t)));
-            }
+            return Some(offset);
         }
     }
-    if is_deep_beside([values[PARTS], values[PARTS - 1], values[PARTS - 2]]) {
-        let lowest = lowest_between(at(PARTS - 1), at(PARTS), |t| margin(segment, t));
-        if margin(segment, lowest) <= 0.0 {
-            return Some(crossing(at(PARTS - 1), lowest, |t| margin(segment, t)));
-        }
-    }
-    None
+    let by_the_end = [values[PARTS], values[PARTS - 1], values[PARTS - 2]];
+    is_deep_beside(by_the_end)
+        .then(|| below_in_dip(at(PARTS - 1), at(PARTS)))
+        .flatten()
 }
 
 /// Whether the parabola through an end and the two points next to it may have a dip between the first two that is half as
