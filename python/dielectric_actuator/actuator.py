@@ -13,14 +13,18 @@ from typing import Any, NamedTuple
 import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
-from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
+from fmpy.fmi2 import FMU2Slave, fmi2Discard, fmi2LastSuccessfulTime, fmi2Terminated
 from fmpy.model_description import ScalarVariable
 
 from . import equilibrium
-from .fmu import LogMessage, Variables, instantiate, located
+from .fmu import LogMessage, Variables, described, instantiate, located
 
 Scene = Mapping[str, float | Callable[[float], float]]
 """Start values of one run by variable name; an input may be a function of time."""
+
+
+MOST_STEPS = 1e9
+"""Communication steps of one response, whose rows would fill some ten gigabytes."""
 
 
 class SavedState(NamedTuple):
@@ -28,6 +32,8 @@ class SavedState(NamedTuple):
 
     time: float
     state: bytes
+    rounded: float = 0.0
+    """What the last addition to `time` rounded off."""
 
 
 class Actuator:
@@ -58,16 +64,16 @@ class Actuator:
         path = located(fmu)
         self.messages: list[LogMessage] = []
         self.time = 0.0
-        self.description = fmpy.read_model_description(str(path))
+        self.description = described(path)
         self._variables = Variables(self.description)
         self._folder = tempfile.TemporaryDirectory(prefix="actuator-fmu-")
         fmpy.extract(str(path), unzipdir=self._folder.name)
-        self._fmu = instantiate(self._folder.name, self.description, self.messages)
+        self._instance: FMU2Slave | None = instantiate(self._folder.name, self.description, self.messages)
         self._fresh = True
 
     def __repr__(self) -> str:
         name, clock = self.description.modelName, self.units["time"]
-        if self._fmu is None:
+        if self._instance is None:
             return f"<Actuator {name}, closed>"
         return f"<Actuator {name} at time {self.time:g}{f' {clock}' if clock else ''}>"
 
@@ -80,11 +86,20 @@ class Actuator:
         self.close()
 
     def close(self) -> None:
-        """Free the instance, unload the library, remove the unpacked folder. A second call does nothing."""
-        if self._fmu is not None:
-            self._fmu.freeInstance()
-            self._fmu = None
+        """Free the instance, unload the library, remove the unpacked folder. A second call does nothing.
+
+        Every other call but to look at the description raises ValueError from then on.
+        """
+        if self._instance is not None:
+            self._instance.freeInstance()
+            self._instance = None
             self._folder.cleanup()
+
+    @property
+    def _fmu(self) -> FMU2Slave:
+        if self._instance is None:
+            raise ValueError("the actuator is closed; make another one")
+        return self._instance
 
     @property
     def time(self) -> float:
@@ -123,38 +138,50 @@ class Actuator:
     ) -> None:
         """Reset, set the scene and leave initialization mode, so that the next call can be `advance`.
 
-        `tolerance` is the integrator's relative tolerance (the FMU's default without one). A function
-        in `scene` is evaluated at `start_time`. `at_equilibrium` starts at rest where the scene's voltage and
-        prestress hold the actuator (`equilibrium`): with surface effects λ = 1 is no such place.
+        What was set before is dropped. A scene that is refused changes nothing: the actuator stays where it was, if
+        its FMU can save its state. `tolerance` is the integrator's relative tolerance (the FMU's default without one).
+        A function in `scene` is evaluated at `start_time`. `at_equilibrium` starts at rest where the scene's voltage
+        and prestress hold the actuator (`equilibrium`): with surface effects λ = 1 is no such place.
         """
         values = {name: value(start_time) if callable(value) else value for name, value in scene.items()}
-        if at_equilibrium:
-            values |= equilibrium.at_rest(self, values, self.equilibrium(values, start_time=start_time))
-        if not self._fresh:
-            self._fmu.reset()
-        self._fresh = False
-        self.messages.clear()
-        self.time = start_time
-        with self._reasons():
-            self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
-        self.set(values)
-        with self._reasons():
-            self._fmu.enterInitializationMode()
-            self._fmu.exitInitializationMode()
+        with self._kept(always=False):
+            if at_equilibrium:
+                values |= equilibrium.at_rest(self, values, self.equilibrium(values, start_time=start_time), start_time)
+            if not self._fresh:
+                self._fmu.reset()
+            self.messages.clear()
+            self.time = start_time
+            with self._reasons():
+                self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
+            self.set(values)
+            with self._reasons():
+                self._fmu.enterInitializationMode()
+                self._fmu.exitInitializationMode()
 
     def equilibrium(self, values: Mapping[str, float], *, start_time: float = 0.0) -> float:
         """The smallest stretch at which the actuator rests in equilibrium under `values`, to the last bit.
 
         It is stable, and it is where a voltage that is raised slowly from 0 leads; the branches of a lossy material
         are relaxed. Raises ValueError where there is none between `lambda_min` and `lambda_max`, that is beyond the
-        static pull-in, and where a source gives a current, or loses voltage to a leak behind a resistance.
+        static pull-in, and where a source gives a current, or loses voltage to a leak behind a resistance. A motion
+        that runs is not disturbed.
         """
-        return equilibrium.find(self, values, start_time)
+        logged = self.messages.copy()
+        with self._kept(always=True):
+            found = equilibrium.find(self, values, start_time)
+        self.messages[:] = logged
+        return found
 
     def set(self, values: Mapping[str, float]) -> None:
-        """Set inputs or parameters by name; each FMI type in one call, refused as a whole."""
-        for group in self._variables.grouped(self._fmu, values):
-            group.values[:] = [values[name] for name in group.names]
+        """Set inputs or parameters by name; each FMI type in one call, refused as a whole.
+
+        A Boolean or an enumeration may be given as a whole number of any type; ValueError where it is none.
+        """
+        groups = self._variables.grouped(self._fmu, values)
+        for group in groups:
+            group.values[:] = [group.access.number(name, values[name]) for name in group.names]
+        self._fresh = False
+        for group in groups:
             with self._reasons():
                 group.write()
 
@@ -198,20 +225,34 @@ class Actuator:
     @contextmanager
     def looking_ahead(self) -> Iterator[None]:
         """A block in which the instance may run on; after it, it is again where it was before."""
-        state, time = self._fmu.getFMUstate(), self.time
+        with self._kept(always=True):
+            yield
+
+    @contextmanager
+    def _kept(self, *, always: bool) -> Iterator[None]:
+        """A block after which the instance is again where it was before: in any case, or if the block fails."""
+        saves = self.description.coSimulation.canGetAndSetFMUstate
+        if always and not saves:
+            raise ValueError(f"{self.description.modelName} cannot save its state (canGetAndSetFMUstate)")
+        state = self._fmu.getFMUstate() if saves else None
+        before = self._time, self._rounded, self._fresh
+        put_back = saves
         try:
             yield
+            put_back = always
         finally:
-            self._fmu.setFMUstate(state)
-            self._fmu.freeFMUstate(state)
-            self.time = time
+            if put_back:
+                self._fmu.setFMUstate(state)
+                self._time, self._rounded, self._fresh = before
+            if saves:
+                self._fmu.freeFMUstate(state)
 
     def save(self) -> SavedState:
         """The whole state, for `restore` of any instance of the same FMU in this or a later process."""
         with self._reasons():
             state = self._fmu.getFMUstate()
             try:
-                return SavedState(self.time, self._fmu.serializeFMUstate(state))
+                return SavedState(self._time, self._fmu.serializeFMUstate(state), self._rounded)
             finally:
                 self._fmu.freeFMUstate(state)
 
@@ -223,7 +264,7 @@ class Actuator:
                 self._fmu.setFMUstate(state)
             finally:
                 self._fmu.freeFMUstate(state)
-        self.time, self._fresh = saved.time, False
+        self._time, self._rounded, self._fresh = saved.time, saved.rounded, False
 
     def advance(self, communication_step: float) -> bool:
         """One communication step. False if the FMU ended the run inside it (``on_pull_in`` = terminate);
@@ -267,6 +308,11 @@ class Actuator:
             raise ValueError(f"stop_time is {stop_time:g}; it must be a number from start_time = {start_time:g} on")
         if not (math.isfinite(communication_step) and communication_step > 0):
             raise ValueError(f"communication_step is {communication_step:g}; it must be a number above 0")
+        if (stop_time - start_time) / communication_step > MOST_STEPS:
+            raise ValueError(
+                f"communication_step is {communication_step:g}; for more than {MOST_STEPS:g} steps up to stop_time = "
+                f"{stop_time:g}, use start and advance"
+            )
         # 1e-9 of a step is rounding of the quotient, not a last step worth taking
         steps = max(0, math.ceil((stop_time - start_time) / communication_step - 1e-9))
         times = start_time + communication_step * np.arange(steps + 1)

@@ -10,14 +10,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
 from . import __version__, device, native, presets
 from .actuator import Actuator
-from .fmu import UnknownName, located
-from .kept import KeptTable
+from .fmu import UnknownName, described, located
+from .kept import KeptTable, writable, write_table
 from .native import grid, known_names, scene_names
 
 THRESHOLDS = {
@@ -35,7 +34,12 @@ EXTRAS = {"matplotlib": "plot", "scipy": "fit"}
 """The extra of the package that brings a module."""
 VARIABLES = "Variables of the FMU are options too, by their names: --phi 0.6 --gamma_s 0.05."
 FIRST_PRESET = {"nondimensional": "step", "si": "silicone_swing"}
-UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "V": 1.0, "kV": 1e3, "m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "1": 1.0}
+UNITS = {
+    "time": {"s": 1.0, "ms": 1e-3, "us": 1e-6},
+    "voltage": {"V": 1.0, "kV": 1e3},
+    "length": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9},
+    "stretch": {"1": 1.0},
+}
 """What measured data may be in, each as so many SI units."""
 
 Values = dict[str, float]
@@ -47,7 +51,10 @@ def main(words: Sequence[str] | None = None) -> int:
     try:
         if words and not words[0].startswith("-") and words[0] not in VERBS:
             raise UnknownName("command", words[0], VERBS)
-        arguments, rest = _parser().parse_known_args(words)
+        parser, verbs = _parser()
+        if words and words[0] in VERBS:
+            words = _joined(words, verbs[words[0]])
+        arguments, rest = parser.parse_known_args(words)
         arguments.run(arguments, _variables(rest, arguments))
     except BrokenPipeError:
         # the reader has seen enough; what is still buffered goes nowhere
@@ -57,6 +64,9 @@ def main(words: Sequence[str] | None = None) -> int:
         extra = EXTRAS.get(str(missing.name).partition(".")[0])
         advice = f"; it comes with pip install 'dielectric-actuator[{extra}]'" if extra else ""
         print(f"error: {missing}{advice}", file=sys.stderr)
+        return 1
+    except (MemoryError, OverflowError) as reason:
+        print(f"error: {reason or 'the memory is full'}; ask for fewer steps or scenes", file=sys.stderr)
         return 1
     except (FMICallException, UnknownName, ValueError, OSError, RuntimeError) as reason:
         notes = getattr(reason, "__notes__", [])
@@ -68,7 +78,8 @@ def main(words: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
+    """The parser of the command, and that of each verb."""
     parser = argparse.ArgumentParser(
         prog="dielectric-actuator", description="The motion of a dielectric elastomer actuator.", allow_abbrev=False
     )
@@ -136,10 +147,26 @@ def _parser() -> argparse.ArgumentParser:
     fit.add_argument(
         "--observed", default="lambda", help="with --si: lambda, thickness, edge_distance or edge_displacement"
     )
-    fit.add_argument("--units", default="s,V,m", help="with --si, of the columns: s, ms, us; V, kV; m, mm, um, nm")
+    fit.add_argument(
+        "--units",
+        help="with --si, of the three columns: s, ms, us; V, kV; m, mm, um, nm, of a stretch 1 (default: s,V,m)",
+    )
     fit.add_argument("--hold", action="store_true", help="the voltage keeps its value until the next row")
     fit.add_argument("--preset", type=Path, metavar="JSON", dest="write", help="write what was found as a preset")
-    return parser
+    return parser, verbs.choices
+
+
+def _joined(words: Sequence[str], verb: argparse.ArgumentParser) -> list[str]:
+    """``--NAME VALUE`` as one word where the verb has no such option: its value is no argument of its own."""
+    joined: list[str] = []
+    for word in words:
+        before = joined[-1] if joined else ""
+        is_variable = before.startswith("--") and "=" not in before and before not in verb._option_string_actions
+        if is_variable and before != "--" and not word.startswith("--"):
+            joined[-1] = f"{before}={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _model(arguments: Any) -> str:
@@ -154,22 +181,19 @@ def _model(arguments: Any) -> str:
 
 
 def _variables(words: Sequence[str], arguments: Any) -> Values:
-    """Values of variables from what the parser has left: ``--NAME VALUE`` or ``--NAME=VALUE``."""
+    """Values of variables from what the parser has left, ``--NAME=VALUE``."""
     if not words:
         return {}
     known = arguments.variables(arguments) if arguments.variables else ()
     options = [option.removeprefix("--") for option in arguments.parser._option_string_actions if len(option) > 2]
     values: Values = {}
-    remaining = iter(words)
-    for word in remaining:
-        name, equals, text = word.partition("=")
+    for word in words:
+        name, _, text = word.partition("=")
         if not word.startswith("--"):
             raise ValueError(f"{word!r} is no option; variables are given as --NAME VALUE")
         name = name.removeprefix("--")
         if name not in known:
             raise UnknownName("option or variable" if known else "option", name, [*options, *known])
-        if not equals:
-            text = next(remaining, "")
         try:
             values[name] = float(text)
         except ValueError:
@@ -179,15 +203,16 @@ def _variables(words: Sequence[str], arguments: Any) -> Values:
 
 def _settable(arguments: Any) -> list[str]:
     """Inputs and parameters of the actuator that is meant."""
-    path = located(arguments.fmu or _model(arguments))
-    described = fmpy.read_model_description(str(path)).modelVariables
-    return [variable.name for variable in described if variable.causality in ("input", "parameter")]
+    variables = described(located(arguments.fmu or _model(arguments))).modelVariables
+    return [variable.name for variable in variables if variable.causality in ("input", "parameter")]
 
 
 def _run(arguments: Any, values: Values) -> None:
     model = _model(arguments)
     preset = presets.load(arguments.preset or FIRST_PRESET[model])
     scene = {**preset.start_values, **values}
+    for path in filter(None, (arguments.csv, arguments.plot)):
+        writable(path)
     from .plot import OVERVIEW, overview
 
     with Actuator(arguments.fmu or model) as actuator:
@@ -210,7 +235,7 @@ def _run(arguments: Any, values: Values) -> None:
     )
     print(f"pulled in at time {when:.6g}{clock}" if pulled_in else "not pulled in")
     if arguments.csv:
-        _write_csv(arguments.csv, {name: response[name] for name in response.dtype.names or ()})
+        write_table(arguments.csv, {name: response[name] for name in response.dtype.names or ()})
         print(arguments.csv)
     if arguments.plot:
         shown = [f"{name} = {value:g} {units.get(name, '')}".rstrip() for name, value in scene.items()]
@@ -285,30 +310,32 @@ def _sweep(arguments: Any, values: Values) -> None:
     columns = grid(**dict(arguments.vary))
     count = len(next(iter(columns.values())))
     scenes = {**columns, **{name: np.full(count, value) for name, value in values.items()}}
+    rows = native.scene_rows(scenes)
     work = repr([arguments.vary, sorted(values.items()), arguments.stop_time, arguments.tolerance, __version__])
-    begin = time.perf_counter()
     with KeptTable(arguments.output, work) as table:
-        before = table.done
+        before = done = table.done
+        parts = native.parts(
+            rows[before:], stop_time=arguments.stop_time, tolerance=arguments.tolerance, workers=arguments.workers
+        )
         print(f"{count} scenes" + (f", going on from {before}" if before else ""), file=sys.stderr)
-        start, part = before, 1024
-        while start < count:
-            part_begin = time.perf_counter()
-            chosen = {name: column[start : start + part] for name, column in scenes.items()}
-            try:
-                found = native.ensemble(
-                    chosen, stop_time=arguments.stop_time, tolerance=arguments.tolerance, workers=arguments.workers
-                )
-            except KeyboardInterrupt:
-                print(f"{start} of {count} are kept; the same command goes on from there", file=sys.stderr)
-                raise
-            table.add({**chosen, **{name: found[name] for name in found.dtype.names or ()}})
-            start = min(start + part, count)
-            now = time.perf_counter()
-            rate = (start - before) / (now - begin)
-            print(f"{start} of {count}, {rate:.0f} a second, {(count - start) / rate:.0f} s left", file=sys.stderr)
-            # a part takes about a second, so that little is lost and progress is seen
-            part = min(max(int(part / (now - part_begin)), 128), 65536)
-        print(table.complete())
+
+        def said(done: int, count: int, seconds: float) -> str:
+            rate = (done - before) / seconds
+            return f"{done} of {count}, {rate:.0f} a second, {(count - done) / rate:.0f} s left"
+
+        progress = _each_second(said)
+        try:
+            for found in parts:
+                chosen = {name: column[done : done + len(found)] for name, column in scenes.items()}
+                table.add({**chosen, **{name: found[name] for name in found.dtype.names or ()}})
+                done += len(found)
+                progress(done, count)
+        except KeyboardInterrupt:
+            print(f"{done} of {count} are kept; the same command goes on from there", file=sys.stderr)
+            raise
+        path = table.complete()
+    print(f"{done} of {count} done", file=sys.stderr)
+    print(path)
 
 
 def _fit(arguments: Any, values: Values) -> None:
@@ -316,6 +343,13 @@ def _fit(arguments: Any, values: Values) -> None:
     from .identification import fit
 
     names = (arguments.time, arguments.voltage, arguments.stretch)
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"the column {name!r} is named twice; time, voltage and stretch are three columns")
+    if arguments.units and not arguments.si:
+        raise ValueError("--units needs --si: without it, all quantities are nondimensional")
+    if arguments.write:
+        writable(arguments.write)
     table = measured.read(arguments.data, names)
     clock, columns = measured.check(
         table[arguments.time], {name: table[name] for name in names[1:]}, clock=arguments.time
@@ -337,16 +371,21 @@ def _fit(arguments: Any, values: Values) -> None:
         print(found.preset(f"Fitted to {arguments.data.name}", middle).save(arguments.write))
 
 
-def _scales(units: str, observed: str) -> tuple[float, float, float]:
+def _scales(units: str | None, observed: str) -> tuple[float, float, float]:
     """SI units in a unit of each column; a stretch has none."""
+    kinds = ("time", "voltage", "stretch" if observed == "lambda" else "length")
+    if units is None:
+        return 1.0, 1.0, 1.0
     given = [unit.strip() for unit in units.split(",")]
     if len(given) != 3:
-        raise ValueError(f"{units!r} names {len(given)} units; it must be those of time, voltage and length: us,V,um")
-    for unit in given:
-        if unit not in UNITS:
-            raise UnknownName("unit", unit, UNITS)
-    seconds, volts, metres = (UNITS[unit] for unit in given)
-    return seconds, volts, 1.0 if observed == "lambda" else metres
+        raise ValueError(
+            f"{units!r} names {len(given)} units; it must be those of {', '.join(kinds)}, with commas between them"
+        )
+    for kind, unit in zip(kinds, given):
+        if unit not in UNITS[kind]:
+            raise UnknownName(f"unit of {kind}", unit, UNITS[kind])
+    seconds, volts, metres = (UNITS[kind][unit] for kind, unit in zip(kinds, given))
+    return seconds, volts, metres
 
 
 def _axis(text: str) -> tuple[str, tuple[float, ...]]:
@@ -359,12 +398,6 @@ def _axis(text: str) -> tuple[str, tuple[float, ...]]:
     except ValueError:
         pass
     raise argparse.ArgumentTypeError(f"{text!r} is no axis; it must be NAME=FIRST:LAST:COUNT, as phi=0.1:0.6:50")
-
-
-def _write_csv(path: Path, columns: dict[str, np.ndarray]) -> None:
-    with KeptTable(path, str(path)) as table:
-        table.add(columns)
-        table.complete()
 
 
 VERBS: dict[str, tuple[Callable[[Any, Values], None], str, Callable[[Any], Sequence[str]] | None]] = {

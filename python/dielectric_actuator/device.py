@@ -10,12 +10,11 @@ import functools
 import math
 from collections.abc import Mapping
 
-import fmpy
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import native
-from .fmu import UnknownName, packed_fmu
+from .fmu import UnknownName, described, located
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +44,7 @@ TYPICAL: Mapping[str, float] = {"gamma_s": 0.02, "tau_s": 0.02, "E_s": 0.1, "for
 @functools.cache
 def limits() -> dict[str, tuple[float, float, float]]:
     """Start value, smallest and largest value of each of `NAMES`, in SI units."""
-    variables = fmpy.read_model_description(str(packed_fmu("si"))).modelVariables
+    variables = described(located("si")).modelVariables
     return {
         variable.name: (float(variable.start), float(variable.min), float(variable.max))
         for variable in variables

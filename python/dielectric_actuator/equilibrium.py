@@ -38,6 +38,11 @@ def find(actuator: Actuator, values: Mapping[str, float], start_time: float) -> 
     start(1.0)
     lowest, highest = _reachable(actuator)
     below = math.nextafter(lowest, highest)
+    if acceleration(below) <= 0:
+        raise ValueError(
+            f"there is no equilibrium above the stretch {lowest:g}: the actuator is pressed together there; let "
+            "lambda_min be smaller, or the prestress larger"
+        )
     falling = slope(below) <= 0
     for above in map(float, np.geomspace(lowest, highest, 200)[1:-1]):
         if acceleration(above) > 0:
@@ -58,11 +63,11 @@ def find(actuator: Actuator, values: Mapping[str, float], start_time: float) -> 
     )
 
 
-def at_rest(actuator: Actuator, values: Mapping[str, float], stretch: float) -> dict[str, float]:
+def at_rest(actuator: Actuator, values: Mapping[str, float], stretch: float, start_time: float) -> dict[str, float]:
     """The start values of an actuator that rests at a stretch under `values`: dashpots and charge with it."""
     found = _rest(actuator, stretch)
     if values.get("R_s", 0.0) > 0:
-        actuator.start({**values, **found, "R_s": 0.0})
+        actuator.start({**values, **found, "R_s": 0.0}, start_time=start_time)
         found["charge_start"] = actuator.get("charge")
     return found
 

@@ -53,6 +53,22 @@ def located(fmu: str | Path) -> Path:
     return path
 
 
+def described(path: Path) -> ModelDescription:
+    """The model description of a packed FMU; ValueError where the file is no FMI 2.0 unit for co-simulation."""
+    try:
+        found = fmpy.read_model_description(str(path))
+    except OSError:
+        raise
+    except Exception as reason:  # FMPy raises what its readers of archives and of XML raise, and Exception itself
+        raise ValueError(f"{path} cannot be read as an FMU: {reason}") from None
+    if found.fmiVersion != "2.0" or found.coSimulation is None:
+        kind = "co-simulation" if found.coSimulation else "model exchange"
+        raise ValueError(
+            f"{path} is an FMU for {kind} in FMI {found.fmiVersion}; it must be one for co-simulation in FMI 2.0"
+        )
+    return found
+
+
 class UnknownName(KeyError):
     """An unknown name; the message suggests names with a similar spelling."""
 
@@ -93,14 +109,17 @@ def instantiate(folder: str | Path, description: ModelDescription, log: list[Log
         freeMemory=fmi2CallbackFreeMemoryTYPE(fmpy.free),
     )
     identifier = description.coSimulation.modelIdentifier
-    instance = FMU2Slave(
-        guid=description.guid,
-        modelIdentifier=identifier,
-        unzipDirectory=str(folder),
-        instanceName="actuator",
-        libraryPath=_library(Path(folder), identifier),
-    )
-    instance.instantiate(callbacks=callbacks, loggingOn=True)
+    try:
+        instance = FMU2Slave(
+            guid=description.guid,
+            modelIdentifier=identifier,
+            unzipDirectory=str(folder),
+            instanceName="actuator",
+            libraryPath=_library(Path(folder), identifier),
+        )
+        instance.instantiate(callbacks=callbacks, loggingOn=True)
+    except Exception as reason:  # FMPy has no narrower one
+        raise OSError(f"{description.modelName} cannot be loaded on this machine: {reason}") from reason
     return instance
 
 
@@ -117,13 +136,25 @@ class Access(NamedTuple):
     function: str
     c_type: Any
     dtype: Any
+    whole: tuple[int, int] | None = None
+    """The smallest and the largest value of a type that has whole numbers only."""
+
+    def number(self, name: str, value: Any) -> Any:
+        """The value as the setter takes it: whole where the type is, of whichever type it is given as."""
+        if self.whole is None:
+            return value
+        lowest, highest = self.whole
+        if not (lowest <= value <= highest and value == int(value)):
+            raise ValueError(f"{name} is {value}; it must be a whole number from {lowest} to {highest}")
+        return int(value)
 
 
+_INTEGER = Access("Integer", fmi2Integer, np.int32, (-(2**31), 2**31 - 1))
 _ACCESS = {
     "Real": Access("Real", fmi2Real, np.float64),
-    "Integer": Access("Integer", fmi2Integer, np.int32),
-    "Enumeration": Access("Integer", fmi2Integer, np.int32),
-    "Boolean": Access("Boolean", fmi2Boolean, np.bool_),
+    "Integer": _INTEGER,
+    "Enumeration": _INTEGER,
+    "Boolean": Access("Boolean", fmi2Boolean, np.bool_, (0, 1)),
 }
 
 
@@ -132,6 +163,7 @@ class Group:
 
     def __init__(self, instance: FMU2Slave, access: Access, names: list[str], references: list[int]):
         self.names = names
+        self.access = access
         self._component = instance.component
         self._getter = getattr(instance, "fmi2Get" + access.function)
         self._setter = getattr(instance, "fmi2Set" + access.function)

@@ -122,6 +122,10 @@ def fit(
     for name in [*free, *(start or {})]:
         if name not in names:
             raise UnknownName("parameter", name, names)
+        if list(free).count(name) > 1:
+            raise ValueError(f"{name} is free twice; name it once")
+    if not free:
+        raise ValueError("no parameter is free; name one at least")
     time, columns = check(time, {"voltage": voltage, "stretch": stretch})
     voltage, measured = columns["voltage"], columns["stretch"]
     if len(time) <= len(free):

@@ -20,8 +20,14 @@ def read(path: str | Path, columns: Iterable[str]) -> dict[str, Floats]:
     Raises `UnknownName` for a column that the file does not have, ValueError with row and column for a value that
     is no number.
     """
-    columns = list(columns)
-    with Path(path).open(newline="", encoding="utf-8-sig") as file:
+    try:
+        return _read(Path(path), list(columns))
+    except (csv.Error, UnicodeDecodeError) as reason:
+        raise ValueError(f"{path} cannot be read as a table: {reason}") from None
+
+
+def _read(path: Path, columns: list[str]) -> dict[str, Floats]:
+    with path.open(newline="", encoding="utf-8-sig") as file:
         reader = csv.reader(file, skipinitialspace=True)
         header = [name.strip() for name in next(reader, [])]
         for name in columns:
@@ -48,9 +54,12 @@ def check(
 ) -> tuple[Floats, dict[str, Floats]]:
     """The time and the columns as arrays; messages count rows from 1 and call the time `clock`.
 
-    Raises ValueError where columns differ in length, a value is no finite number, or the time does not increase.
+    Raises ValueError where columns are empty or differ in length, a value is no finite number, or the time does not
+    increase.
     """
-    time = np.asarray(time, dtype=float)
+    time = np.atleast_1d(np.asarray(time, dtype=float))
+    if not len(time):
+        raise ValueError(f"{clock} has no rows")
     checked = {name: np.asarray(column, dtype=float) for name, column in columns.items()}
     for name, column in {clock: time, **checked}.items():
         if column.shape != (len(time),):

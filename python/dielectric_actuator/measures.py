@@ -13,6 +13,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from distributed import WorkerPlugin, get_worker
 
 from .actuator import Actuator
@@ -55,11 +56,17 @@ def run_scenes(actuator: Actuator, measure: Measure, scenes: list[dict[str, floa
     results: list[dict[str, object]] = []
     for scene in scenes:
         try:
-            results.append({**measure(actuator, scene), "failure": None})
+            found = {name: _plain(value) for name, value in measure(actuator, scene).items()}
+            results.append({**found, "failure": None})
         except Exception as failure:  # whatever one scene raises, the others go on
             reason = " ".join([f"{type(failure).__name__}: {failure}", *getattr(failure, "__notes__", [])])
             results.append({"failure": reason})
     return results
+
+
+def _plain(value: Any) -> object:
+    """A number of NumPy as one of Python."""
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def frequency_response(actuator: Actuator, scene: Mapping[str, float], *, stop_time: float) -> dict[str, float]:

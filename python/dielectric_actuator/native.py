@@ -10,15 +10,15 @@ import functools
 import math
 import os
 import platform
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import fmpy
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .fmu import UnknownName, packed_fmu
+from .fmu import UnknownName, described, located
 from .measured import check
 
 Floats = NDArray[np.float64]
@@ -39,8 +39,10 @@ _OUTCOME = np.dtype([
     ("lambda", "f8"), ("lambda_dot", "f8"), ("lambda_lowest", "f8"), ("lambda_highest", "f8"),
     ("pull_in_time", "f8"), ("failed", "f8"),
 ])  # fmt: skip
-_SLICE = 4096
-"""Scenes between two reports of progress, a thread."""
+_CHUNK = 128
+"""Scenes that a thread follows at a time (`CHUNK` of the native library)."""
+_PART = 0.3
+"""Seconds that a part of an ensemble takes about: that long Ctrl-C waits, and progress is reported as often."""
 
 
 class Collapse(RuntimeError):
@@ -86,7 +88,7 @@ def known_names() -> tuple[str, ...]:
 @functools.cache
 def limits() -> dict[str, tuple[float, float, float]]:
     """Start value, smallest and largest value of each of `scene_names` and `known_names`."""
-    description = fmpy.read_model_description(str(packed_fmu()))
+    description = described(located("nondimensional"))
     found = {
         variable.name: (
             float(variable.start),
@@ -128,32 +130,74 @@ def ensemble(
     cannot go on the numbers are NaN. `progress` is called with the number of scenes done and that of all.
 
     Raises `UnknownName` for a column with an unknown name, ValueError with row and column for a value that is NaN or
-    out of range.
+    out of range, before any scene is followed. Ctrl-C stops it within a second or so.
     """
+    rows = scene_rows(scenes)
+    found = []
+    for part in parts(rows, stop_time=stop_time, tolerance=tolerance, workers=workers):
+        found.append(part)
+        if progress:
+            progress(sum(map(len, found)), len(rows))
+    return np.concatenate(found) if found else _with_thickness(np.empty(0, dtype=_OUTCOME))
+
+
+def scene_rows(scenes: Mapping[str, ArrayLike]) -> Floats:
+    """The scenes of an `ensemble` as rows, with a column for each of `scene_names`; raises what `ensemble` does."""
     names = scene_names()
     for name in scenes:
         if name not in names:
             raise UnknownName("variable", name, names)
-    if not (math.isfinite(stop_time) and stop_time > 0):
-        raise ValueError(f"stop_time is {stop_time:g}; it must be a number above 0")
-    if not 1e-14 <= tolerance <= 1e-2:
-        raise ValueError(f"tolerance is {tolerance:g}; it must be from 1e-14 to 1e-2")
     columns = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(scenes.get(name, limits()[name][0]), dtype=float)) for name in names)
     )
     if columns[0].ndim != 1:
         raise ValueError(f"the columns have {columns[0].ndim} dimensions; they must have one, as `grid` makes them")
-    rows = np.ascontiguousarray(np.column_stack([_column(name, column) for name, column in zip(names, columns)]))
-    outcomes = np.empty(len(rows), dtype=_OUTCOME)
-    slice_size = _SLICE * (workers or os.cpu_count() or 1)
-    for start in range(0, len(rows), slice_size):
-        part, found = rows[start : start + slice_size], outcomes[start : start + slice_size]
-        ending = _library().dea_sweep(part.ctypes.data, len(part), stop_time, tolerance, workers, found.ctypes.data)
-        if ending:
-            raise RuntimeError("a fault in the native library: the ensemble could not be followed")
-        if progress:
-            progress(start + len(part), len(rows))
-    return _with_thickness(outcomes)
+    table = {name: _column(name, column) for name, column in zip(names, columns)}
+    start, lowest, highest = (table[name] for name in ("lambda_start", "lambda_min", "lambda_max"))
+    bad = np.flatnonzero(~((lowest < start) & (start < highest)))
+    if bad.size:
+        row = bad[0]
+        raise ValueError(
+            f"lambda_start in row {row + 1} is {start[row]:g}; it must lie between lambda_min = {lowest[row]:g} and "
+            f"lambda_max = {highest[row]:g}"
+        )
+    return np.ascontiguousarray(np.column_stack([*table.values()]))
+
+
+def parts(
+    rows: Floats, *, stop_time: float, tolerance: float = DEFAULT_TOLERANCE, workers: int = 0
+) -> Iterator[np.ndarray]:
+    """The result of an `ensemble` of `scene_rows` part by part, in their order, for a caller that keeps each."""
+    if not (math.isfinite(stop_time) and stop_time > 0):
+        raise ValueError(f"stop_time is {stop_time:g}; it must be a number above 0")
+    _check_tolerance(tolerance)
+    if not (isinstance(workers, int) and workers >= 0):
+        raise ValueError(f"workers is {workers}; it must be a whole number above 0, or 0 for one a core")
+    threads = workers or os.cpu_count() or 1
+
+    def followed() -> Iterator[np.ndarray]:
+        start, chunks = 0, threads
+        while start < len(rows):
+            begin = time.perf_counter()
+            part = rows[start : start + chunks * _CHUNK]
+            outcomes = np.empty(len(part), dtype=_OUTCOME)
+            ending = _library().dea_sweep(
+                part.ctypes.data, len(part), stop_time, tolerance,
+                min(threads, -(-len(part) // _CHUNK)), outcomes.ctypes.data,
+            )  # fmt: skip
+            if ending:
+                raise RuntimeError("a fault in the native library: the ensemble could not be followed")
+            yield _with_thickness(outcomes)
+            start += len(part)
+            taken = max(time.perf_counter() - begin, _PART / 8)
+            chunks = max(threads, int(chunks * _PART / taken))
+
+    return followed()
+
+
+def _check_tolerance(tolerance: float) -> None:
+    if not 1e-14 <= tolerance <= 1e-2:
+        raise ValueError(f"tolerance is {tolerance:g}; it must be from 1e-14 to 1e-2")
 
 
 def _with_thickness(outcomes: np.ndarray) -> np.ndarray:
@@ -199,11 +243,17 @@ def sensitivities(
     knowns = np.array([
         _column(name, np.array([float(values.get(name, limits()[name][0]))]))[0] for name in names
     ])  # fmt: skip
+    _check_tolerance(tolerance)
     time, columns = check(time, {"voltage": voltage})
-    sampled = np.ascontiguousarray(time if at is None else np.asarray(at, dtype=float))
-    back = np.flatnonzero(~(np.diff(sampled, prepend=time[0]) >= 0))
+    sampled = np.ascontiguousarray(time if at is None else at, dtype=float)
+    if sampled.ndim != 1:
+        raise ValueError(f"at has {sampled.ndim} dimensions; it must be a row of times")
+    back = np.flatnonzero(~((np.diff(sampled, prepend=time[0]) >= 0) & np.isfinite(sampled)))
     if back.size:
-        raise ValueError(f"at in row {back[0] + 1} is {sampled[back[0]]:g}; it must not go back, nor start before time")
+        raise ValueError(
+            f"at in row {back[0] + 1} is {sampled[back[0]]:g}; it must not go back, nor start before "
+            "time, nor be infinite"
+        )
     bounds = np.array([limits()["lambda_min"][0], limits()["lambda_max"][0]])
     ramps = _ramps(time, columns["voltage"], interpolation)
     samples = np.empty((len(sampled), 1 + len(names)))

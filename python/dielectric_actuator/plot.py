@@ -7,8 +7,9 @@ SI units have them, with the prefix that fits.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -52,10 +53,12 @@ Units = Mapping[str, str]
 class _Scale:
     """The numbers of one variable in the power of ten that suits a plot, and the label that says so."""
 
-    def __init__(self, name: str, values: np.ndarray, units: Units):
-        unit = units.get(name, "")
+    def __init__(self, name: str, response: np.ndarray, units: Units, shared: Iterable[str] = ()):
+        """`shared` names further variables; those with the same unit get the same power of ten."""
+        values, unit = response[name], units.get(name, "")
         label = (IN_SI if units.get("time") else NONDIMENSIONAL).get(name, name)
-        finite = np.abs(values[np.isfinite(values)])
+        alike = [values, *(response[other] for other in shared if units.get(other, "") == unit)]
+        finite = np.abs(np.concatenate([column[np.isfinite(column)] for column in alike]))
         largest = float(finite.max(initial=0.0))
         power = 3 * math.floor(math.log10(largest) / 3 + 1e-9) if unit and largest > 0 else 0
         power = min(max(power, min(PREFIXES)), max(PREFIXES))
@@ -69,12 +72,15 @@ class _Scale:
 
 
 def history(axes: Any, response: np.ndarray, *names: str, units: Units | None = None) -> None:
-    """Variables over time, the stretch if none is named; several share an axis, and should share a unit."""
+    """Variables over time, the stretch if none is named; several share an axis, and should share a unit.
+
+    After six the colours come again, dashed, then dotted.
+    """
     names = names or ("lambda",)
-    time = _Scale("time", response["time"], units or {})
-    for colour, name in zip(COLOURS, names):
-        scale = _Scale(name, response[name], units or {})
-        axes.plot(time.values, scale.values, color=colour, label=scale.label)
+    time = _Scale("time", response, units or {})
+    for (style, colour), name in zip(itertools.cycle(itertools.product(("-", "--", ":"), COLOURS)), names):
+        scale = _Scale(name, response, units or {}, names)
+        axes.plot(time.values, scale.values, style, color=colour, label=scale.label)
     _decorate(axes, time.label, scale.label)
     if len(names) > 1:
         axes.set_ylabel("")
@@ -93,16 +99,18 @@ def phase_portrait(
     """Rate over position, a dot at the start; up to the pull-in, where the actuator is stopped."""
     if "pulled_in" in (response.dtype.names or ()):
         response = response[~response["pulled_in"].astype(bool)]
-    across, along = (_Scale(name, response[name], units or {}) for name in (position, rate))
+    across, along = (_Scale(name, response, units or {}) for name in (position, rate))
+    _decorate(axes, across.label, along.label)
+    if not len(response):  # pulled in at the start
+        return
     axes.plot(across.values, along.values, color=COLOURS[0])
     axes.plot(across.values[0], along.values[0], "o", color=COLOURS[1], markersize=5)
-    _decorate(axes, across.label, along.label)
     axes.annotate("start", (across.values[0], along.values[0]), (6, 5), textcoords="offset points", color=COLOURS[1])
 
 
 def pull_in_margin(axes: Any, response: np.ndarray, *, units: Units | None = None) -> None:
     """By how much the voltage may grow until dynamic pull-in from rest, over time; below 0 it is lost."""
-    time, margin = (_Scale(name, response[name], units or {}) for name in ("time", "pull_in_margin"))
+    time, margin = (_Scale(name, response, units or {}) for name in ("time", "pull_in_margin"))
     _decorate(axes, time.label, margin.label)
     axes.set_xlim(time.values[0], time.values[-1])
     if not np.isfinite(margin.values).any():
@@ -133,7 +141,7 @@ def overview(response: np.ndarray, title: str = "", *, units: Units | None = Non
     phase_portrait(panels["portrait"], response, units=units)
     if response["pulled_in"][-1]:
         first = int(np.argmax(response["pulled_in"]))
-        when = _Scale("time", response["time"], units or {}).values[first]
+        when = _Scale("time", response, units or {}).values[first]
         above.axvline(when, color=COLOURS[1], linestyle="--", linewidth=1.2)
         above.annotate("pull-in ", (when, above.get_ylim()[1]), ha="right", va="top", color=COLOURS[1])
     if title:

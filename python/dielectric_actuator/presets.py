@@ -14,6 +14,11 @@ from pathlib import Path
 
 from .fmu import MODELS, UnknownName
 
+_KINDS = {
+    "start_values": "numbers by the names of variables",
+    "stop_time": "a number",
+    "communication_step": "a number",
+}
 _SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 
 
@@ -45,6 +50,7 @@ class Preset:
         """Write the preset as JSON, for `load`."""
         path = Path(path)
         content = {name: value for name, value in asdict(self).items() if value != ""}
+        content["start_values"] = {name: float(value) for name, value in self.start_values.items()}
         path.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
         return path
 
@@ -90,10 +96,21 @@ def load(name: str | Path) -> Preset:
     offered = {field.name for field in fields(Preset)}
     if not isinstance(found, dict) or not wanted <= set(found) <= offered:
         raise ValueError(f"{name} holds no preset, which has {', '.join(sorted(wanted))}")
+    for place, value in found.items():
+        if place == "start_values":
+            right = isinstance(value, dict) and all(_is_number(number) for number in value.values())
+        else:
+            right = _is_number(value) if place in ("stop_time", "communication_step") else isinstance(value, str)
+        if not right:
+            raise ValueError(f"{place} of {name} is {value!r}; it must be {_KINDS.get(place, 'a text')}")
     preset = Preset(**found)
     if preset.model not in MODELS:
         raise UnknownName("actuator", preset.model, MODELS)
     return preset
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, (int, float))
 
 
 def save_all(folder: str | Path) -> list[Path]:

@@ -31,20 +31,21 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import fmpy
 import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
+from dask.base import tokenize
 from distributed import Client, Future, LocalCluster
 from distributed.deploy import Cluster
 from distributed.diagnostics.plugin import SchedulerUploadFile, UploadFile
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import measures
-from .fmu import UnknownName, located
+from .fmu import UnknownName, described, located
 from .measures import Measure
 
 Row = dict[str, Any]
+Floats = NDArray[np.float64]
 
 FINGERPRINT = b"sweep"
 BATCH = 100
@@ -66,7 +67,7 @@ class Unfinished(RuntimeError):
 def sweep(
     measure: Measure,
     scenes: Mapping[str, ArrayLike],
-    output: Path,
+    output: str | Path,
     *,
     cluster: str | Cluster | None = None,
     workers: int | None = None,
@@ -77,18 +78,24 @@ def sweep(
     """Run `measure` on each scene and return (and leave in the Parquet file `output`) a table of all.
 
     `scenes` holds a column of start values for each varied variable of the actuator `fmu`, which is given as to
-    `Actuator`. `cluster` is the address of a Dask scheduler, or one of Dask's cluster objects; without it `workers`
-    processes are started here (default: one a processor core). Raises `UnknownName` for a column that is no variable,
+    `Actuator`; numbers and columns are broadcast. A result of `measure` is a number, a Boolean, a text or None.
+    `cluster` is the address of a Dask scheduler, or one of Dask's cluster objects; without it `workers` processes are
+    started here (default: one a processor core).
+
+    `output` is taken over where it holds the same sweep, by its FMU, its scenes and the code of `measure`: its source
+    and settings, the constants and the functions of its module that it uses.
+
+    Raises `UnknownName` for a column that is no variable, ValueError for columns that do not fit together,
     `AnotherSweep` if `output` holds the results of one, `Unfinished` if batches were lost or the cluster gave no sign
     of life for `patience` seconds.
     """
-    columns = {name: np.asarray(column, dtype=float) for name, column in scenes.items()}
     packed = located(fmu)
-    known = [variable.name for variable in fmpy.read_model_description(str(packed)).modelVariables]
-    for name in columns:
+    known = [variable.name for variable in described(packed).modelVariables]
+    for name in scenes:
         if name not in known:
             raise UnknownName("variable", name, known)
-    results = _Results(output, _fingerprint(measure, columns, packed))
+    columns = _columns(scenes)
+    results = _Results(Path(output), _fingerprint(measure, columns, packed))
     count = len(next(iter(columns.values())))
     pending = np.setdiff1d(np.arange(count), results.finished())
     progress = Progress(count, count - len(pending))
@@ -117,6 +124,16 @@ def sweep(
     if lost:
         raise Unfinished("\n".join([f"{len(lost)} batches were lost; run again to go on from the others", *lost[:5]]))
     return results.complete()
+
+
+def _columns(scenes: Mapping[str, ArrayLike]) -> dict[str, Floats]:
+    """The start values of the scenes, in columns of one length."""
+    given = {name: np.atleast_1d(np.asarray(column, dtype=float)) for name, column in scenes.items()}
+    lengths = {len(column) for column in given.values()} - {1} or {1}
+    if not given or any(column.ndim != 1 for column in given.values()) or len(lengths) > 1 or 0 in lengths:
+        shapes = ", ".join(f"{name} {column.shape}" for name, column in given.items()) or "none"
+        raise ValueError(f"the columns have the shapes {shapes}; they must have one length above 0, or be numbers")
+    return dict(zip(given, np.broadcast_arrays(*given.values())))
 
 
 class Heartbeats:
@@ -272,6 +289,9 @@ class _Results:
         if parts:
             # a batch in which every scene failed has no columns of results
             table = pa.concat_tables([parquet.read_table(path) for path in parts], promote_options="default")
+            # a result that no scene has is a number that is missing
+            numbers = [f.with_type(pa.float64()) if pa.types.is_null(f.type) else f for f in table.schema]
+            table = table.cast(pa.schema(numbers, table.schema.metadata))
             self._write(table.sort_by("scene"), self._output)
             for path in parts:
                 path.unlink()
@@ -290,32 +310,49 @@ class _Results:
 
 def _schema(rows: list[Row], found: list[Row]) -> pa.Schema:
     """Columns of a batch: number, parameters, results (Boolean or double), reason of a failure."""
-    results = next((row for row in found if row["failure"] is None), {})
-    return pa.schema(
-        [("scene", pa.int64())]
-        + [(name, pa.float64()) for name in rows[0]]
-        + [
-            (name, pa.bool_() if isinstance(value, bool) else pa.float64())
-            for name, value in results.items()
-            if name != "failure"
-        ]
-        + [("failure", pa.string())]
-    )
+    types = {"scene": pa.int64(), **dict.fromkeys(rows[0], pa.float64())}
+    for name in dict.fromkeys(name for row in found for name in row if name != "failure"):
+        types[name] = _type(name, [row[name] for row in found if row.get(name) is not None])
+    return pa.schema([*types.items(), ("failure", pa.string())])
 
 
-def _fingerprint(measure: Measure, scenes: Mapping[str, np.ndarray], fmu: Path) -> bytes:
+def _type(name: str, values: list[Any]) -> pa.DataType:
+    """Type of a column of results; null, which any other may replace, where a batch has none."""
+    for python, arrow in ((bool, pa.bool_()), ((int, float), pa.float64()), (str, pa.string())):
+        if all(isinstance(value, python) for value in values):
+            return arrow if values else pa.null()
+    raise ValueError(f"the measure's results {name!r} must be all numbers, all Booleans, or all texts")
+
+
+def _fingerprint(measure: Measure, scenes: Mapping[str, Floats], fmu: Path) -> bytes:
     """Tells sweeps apart: the FMU, the code and settings of the measure, the scenes."""
     function, settings = _unwrapped(measure)
     digest = hashlib.sha256(fmu.read_bytes())
-    digest.update(f"{inspect.getsource(function)}{sorted(settings.items())}".encode())
+    for part in (*_code(function, set()), tokenize(settings)):
+        digest.update(part.encode())
     for name, column in scenes.items():
         digest.update(name.encode() + column.tobytes())
     return digest.hexdigest().encode()
 
 
-def _unwrapped(measure: Measure) -> tuple[Any, dict[str, Any]]:
+def _code(function: Any, seen: set[Any]) -> Iterator[str]:
+    """The source of a function and what it refers to: constants by value, functions of its module by their source."""
+    if function in seen:
+        return
+    seen.add(function)
+    yield inspect.getsource(function)
+    variables = inspect.getclosurevars(function)
+    for name, value in sorted({**variables.globals, **variables.nonlocals}.items()):
+        yield name
+        if inspect.isfunction(value) and value.__module__ == function.__module__:
+            yield from _code(value, seen)
+        elif not (callable(value) or inspect.ismodule(value)):
+            yield tokenize(value)
+
+
+def _unwrapped(measure: Measure) -> tuple[Any, tuple[Any, ...]]:
     """The function of a measure, and the settings that `functools.partial` gave it."""
-    return (measure.func, measure.keywords) if isinstance(measure, partial) else (measure, {})
+    return (measure.func, (measure.args, measure.keywords)) if isinstance(measure, partial) else (measure, ())
 
 
 @contextmanager

@@ -15,6 +15,7 @@ import pytest
 import command
 import dask_cluster
 import references
+import sweep_measures
 from dielectric_actuator import UnknownName, grid, measures
 from dielectric_actuator import sweep as engine
 from sweep_measures import fatal, whose
@@ -115,6 +116,42 @@ def test_another_sweep_is_not_mixed_in(cluster, fmu_path, tmp_path):
     for measure, axes in ((long, {"phi": [0.1, 0.2]}), (short, {"phi": [0.1, 0.3]})):
         with pytest.raises(engine.AnotherSweep, match="remove it or write elsewhere"):
             engine.sweep(measure, grid(**axes), output, cluster=cluster, fmu=fmu_path)
+
+
+def test_results_of_every_kind_and_numbers_beside_columns(cluster, fmu_path, tmp_path):
+    output = str(tmp_path / "doubled.parquet")
+    scenes = {"phi": [0.125, 0.5], "S": 0.25}
+    table = engine.sweep(sweep_measures.doubled, scenes, output, cluster=cluster, fmu=fmu_path)
+    assert table.drop_columns(["scene", "failure"]).to_pylist() == [
+        {"phi": 0.125, "S": 0.25, "twice": 0.25, "large": False, "kind": None, "more": None},
+        {"phi": 0.5, "S": 0.25, "twice": 1.0, "large": True, "kind": "large", "more": 3.0},
+    ]
+
+
+@pytest.mark.parametrize("changed", ["FACTOR", "twice"])
+def test_a_measure_that_uses_something_else_is_another(cluster, fmu_path, tmp_path, monkeypatch, changed):
+    def sweep():
+        return engine.sweep(
+            sweep_measures.doubled, {"phi": [0.5]}, tmp_path / "a.parquet", cluster=cluster, fmu=fmu_path
+        )
+
+    sweep()
+    replaced = {"FACTOR": 3.0, "twice": lambda number: 3.0 * number}[changed]
+    if callable(replaced):
+        replaced.__module__ = sweep_measures.__name__
+    with monkeypatch.context() as patched:
+        patched.setattr(sweep_measures, changed, replaced)
+        with pytest.raises(engine.AnotherSweep):
+            sweep()
+    # what the measure does not use may change
+    monkeypatch.setattr(sweep_measures, "whose", None)
+    assert sweep()["twice"].to_pylist() == [1.0]
+
+
+@pytest.mark.parametrize("scenes", [{}, {"phi": []}, {"phi": [0.1, 0.2], "S": [0.1, 0.2, 0.3]}, {"phi": [[0.1]]}])
+def test_columns_that_do_not_fit_together_are_refused(fmu_path, tmp_path, scenes):
+    with pytest.raises(ValueError, match="the columns have the shapes"):
+        engine.sweep(measures.pull_in, scenes, tmp_path / "none.parquet", cluster="tcp://nowhere:1", fmu=fmu_path)
 
 
 def test_an_unknown_name_is_said_before_anything_is_started(fmu_path, tmp_path):

@@ -77,15 +77,79 @@ def test_the_clock_of_many_steps_does_not_drift(actuator):
     assert actuator.time == 0.5 - 1e-9
 
 
-def test_looking_ahead_leaves_no_trace(actuator):
-    actuator.start({"phi": 0.4})
-    actuator.advance(5.0)
-    before = actuator.get("lambda", "lambda_dot")
+def refused(actuator):
+    with pytest.raises(FMICallException):
+        actuator.start({"phi": 0.3, "c": -1.0}, start_time=3.0)
+
+
+def looked_ahead(actuator):
     with actuator.looking_ahead():
         actuator.set({"phi": 0.6})
         actuator.advance(7.0)
-        assert actuator.get("lambda") != before[0]
-    assert actuator.get("lambda", "lambda_dot") == before and actuator.time == 5.0
+
+
+@pytest.mark.parametrize("disturb", [
+    looked_ahead,
+    lambda actuator: actuator.equilibrium({"phi": 0.2, "S": 0.1}),
+    refused,
+    lambda actuator: actuator.restore(actuator.save()),
+])  # fmt: skip
+def test_what_leaves_no_trace(disturb):
+    with Actuator() as actuator, Actuator() as undisturbed:
+        for one in (actuator, undisturbed):
+            one.start({"phi": 0.4})
+            for _ in range(8):
+                one.advance(0.7)
+        disturb(actuator)
+        for one in (actuator, undisturbed):
+            for _ in range(8):
+                one.advance(0.7)
+        assert actuator.get("lambda", "lambda_dot") == undisturbed.get("lambda", "lambda_dot")
+        # the clock too, to the last bit: its rounding is carried on
+        assert actuator.time == undisturbed.time
+
+
+def test_what_is_set_before_a_start_is_dropped_each_time():
+    with Actuator() as actuator:
+        for _ in range(2):
+            actuator.set({"phi": 0.4})
+            actuator.start({})
+            assert actuator.get("phi") == 0.0
+
+
+@pytest.mark.parametrize("call", [
+    lambda actuator: actuator.get("lambda"),
+    lambda actuator: actuator.set({"phi": 0.4}),
+    lambda actuator: actuator.start({}),
+    lambda actuator: actuator.advance(1.0),
+    lambda actuator: actuator.save(),
+    lambda actuator: actuator.equilibrium({}),
+    lambda actuator: actuator.run({}, stop_time=1.0, communication_step=1.0),
+])  # fmt: skip
+def test_a_closed_actuator_says_so(call):
+    with Actuator() as actuator:
+        actuator.start({"phi": 0.1})
+        actuator.set({"phi": 0.2})
+        actuator.get("lambda")
+    with pytest.raises(ValueError, match="the actuator is closed"):
+        call(actuator)
+    assert actuator.variables["phi"].unit == "1" and "closed" in repr(actuator)
+
+
+def test_a_whole_number_may_be_of_any_type(actuator):
+    for number in (1, 1.0, np.int64(1), np.bool_(True)):
+        actuator.start({"record_extremes": number, "on_pull_in": 1 + number})
+        assert actuator.get("record_extremes", "on_pull_in") == [1, 2]
+    for name, number in (("record_extremes", 2), ("on_pull_in", 1.5), ("on_pull_in", math.nan), ("on_pull_in", 1e300)):
+        with pytest.raises(ValueError, match=f"{name} is .*; it must be a whole number from"):
+            actuator.start({name: number})
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x05\x06" + bytes(18)])
+def test_a_file_that_is_no_fmu_is_refused(tmp_path, content):
+    (tmp_path / "bad.fmu").write_bytes(content)
+    with pytest.raises(ValueError, match=r"bad\.fmu cannot be read as an FMU"):
+        Actuator(tmp_path / "bad.fmu")
 
 
 @pytest.mark.parametrize(
@@ -116,6 +180,12 @@ def test_with_surface_effects_a_stretch_of_1_is_no_equilibrium(actuator):
     roots = np.roots([4 * tau, 1 + 2 * gamma - 2 * tau, 0, 0, -1])
     (square,) = roots[np.isreal(roots) & (roots.real > 0)].real
     assert actuator.equilibrium({"gamma_s": gamma, "tau_s": tau}) == pytest.approx(math.sqrt(square), rel=1e-14)
+
+
+def test_there_is_no_equilibrium_where_the_actuator_is_pressed_together(actuator):
+    assert 0.05 < actuator.equilibrium({"S": -5.0}) < 0.9
+    with pytest.raises(ValueError, match=r"no equilibrium above the stretch 0\.9"):
+        actuator.equilibrium({"S": -5.0, "lambda_min": 0.9})
 
 
 def test_equilibria_are_told_apart_up_to_the_static_threshold(actuator):

@@ -1,6 +1,8 @@
 """The command ``dielectric-actuator``, in this process."""
 
 import csv
+import os
+import re
 import sys
 
 import numpy as np
@@ -100,6 +102,14 @@ def test_thresholds_are_printed(capsys):
     (["thresholds", "phi"], "'phi' is no option"),
     (["presets", "--phi=1"], "no option 'phi'"),
     (["fit", "none.csv", "--free", "c"], "none.csv"),
+    (["fit", "none.csv", "--free", "c", "--units", "s,V,1"], "--units needs --si"),
+    (["fit", "none.csv", "--free", "c", "--time", "voltage"], "'voltage' is named twice"),
+    (["run", "--phi"], "phi is ''; it must be a number"),
+    (["run", "--on_pull_in", "1.5"], "on_pull_in is 1.5; it must be a whole number"),
+    (["run", "--stop-time", "1e18"], "communication_step is 0.1; for more than 1e+09 steps"),
+    (["sweep", "--vary", "phi=0:1:100000000000000000"], "ask for fewer steps or scenes"),
+    (["run", "--fmu", __file__], "cannot be read as an FMU"),
+    (["sweep", "--vary", "phi=0:1:3", "--workers", "-1"], "workers is -1"),
 ])  # fmt: skip
 def test_an_error_is_one_line(capsys, words, message):
     code, _, err = run(capsys, *words)
@@ -128,16 +138,14 @@ def test_a_sweep_is_a_table_of_all_combinations(capsys, tmp_path):
 
 def test_an_interrupted_sweep_goes_on_from_what_is_done(capsys, tmp_path, monkeypatch):
     path, axes = tmp_path / "sweep.csv", ["--vary", "phi=0.1:0.6:20000", "--stop-time", "20"]
-    whole, calls = native.ensemble, []
+    whole = native.parts
 
     def stopped(*scenes, **options):
-        calls.append(1)
-        if len(calls) == 2:
-            raise KeyboardInterrupt
-        return whole(*scenes, **options)
+        yield next(whole(*scenes, **options))
+        raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr(native, "ensemble", stopped)
+        patched.setattr(native, "parts", stopped)
         code, _, err = run(capsys, "sweep", *axes, "--output", path)
     assert code == 130 and "interrupted" in err and not path.exists()
     # a line that was being written does not count
@@ -146,9 +154,42 @@ def test_an_interrupted_sweep_goes_on_from_what_is_done(capsys, tmp_path, monkey
     code, _, err = run(capsys, "sweep", "--vary", "phi=0.1:0.5:20000", "--output", path)
     assert code == 2 and "unfinished rows of other work" in err
     code, _, err = run(capsys, "sweep", *axes, "--output", path)
-    assert code == 0 and "20000 scenes, going on from 1024" in err
+    done = int(re.search("20000 scenes, going on from ([0-9]+)", err)[1])
+    assert code == 0 and 0 < done < 20000
     voltages = np.loadtxt(path, delimiter=",", skiprows=1, usecols=0)
     np.testing.assert_array_equal(voltages, np.linspace(0.1, 0.6, 20000))
+
+
+def test_a_bad_value_of_a_sweep_is_said_before_anything_is_written(capsys, tmp_path):
+    code, _, err = run(capsys, "sweep", "--vary", "phi=0:1e6:5000", "--output", tmp_path / "sweep.csv")
+    assert code == 2 and "phi in row" in err and not list(tmp_path.iterdir())
+
+
+def test_a_response_has_no_rows_of_other_work(capsys, tmp_path):
+    path = tmp_path / "out.csv"
+    (tmp_path / "out.csv.unfinished").write_text("# of a sweep that was stopped\nphi\n0.1\n0.2\n")
+    assert run(capsys, "run", "--stop-time", 1, "--csv", path)[0] == 0
+    assert len(path.read_text().splitlines()) == 12
+    assert "stopped" in (tmp_path / "out.csv.unfinished").read_text()
+
+
+@pytest.mark.parametrize("words", [("run", "--stop-time", 1, "--csv"), ("sweep", "--vary", "phi=0:0.1:2", "--output")])
+def test_links_and_pipes_stay_what_they_are(capsys, tmp_path, words):
+    target, link, pipe = (tmp_path / name for name in ("target.csv", "link.csv", "pipe"))
+    link.symlink_to(target)
+    assert run(capsys, *words, link)[0] == 0
+    assert link.is_symlink() and len(target.read_text().splitlines()) > 2
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    assert run(capsys, *words, pipe)[0] == 0
+    assert pipe.is_fifo() and os.read(reader, 100_000).decode() == target.read_text()
+    os.close(reader)
+
+
+@pytest.mark.parametrize("option", ["--csv", "--plot"])
+def test_a_folder_is_refused_before_the_run(capsys, tmp_path, option):
+    code, out, err = run(capsys, "run", option, tmp_path)
+    assert code == 1 and "is a folder; name a file in it" in err and not out
 
 
 def test_a_table_without_rows_is_taken_over(tmp_path):
@@ -165,11 +206,12 @@ def test_a_fit_of_a_file(capsys, tmp_path):
     stretch, _ = native.sensitivities({"gamma_s": 0.07}, time, voltage, interpolation="hold")
     data = tmp_path / "data.csv"
     np.savetxt(data, np.column_stack([time, voltage, stretch]), delimiter=",", header="t,V,lambda", comments="")
-    code, out, err = run(
-        capsys, "fit", data, "--free", "gamma_s", "--time", "t", "--voltage", "V", "--stretch", "lambda", "--hold",
-        "--preset", tmp_path / "found.json",
-    )  # fmt: skip
+    words = ["--free", "gamma_s", "--time", "t", "--voltage", "V", "--stretch", "lambda", "--hold"]
+    code, out, err = run(capsys, "fit", data, *words)
+    run(capsys, "fit", data, *words, "--preset", tmp_path / "found.json")
     assert code == 0, err
+    before = run(capsys, "fit", "--tau_s", "0.0", data, *words)
+    assert before == run(capsys, "fit", data, *words, "--tau_s=0") and before[:2] == (0, out)
     assert "gamma_s" in out and presets.load(tmp_path / "found.json").start_values["gamma_s"] == pytest.approx(0.07)
 
 
@@ -186,7 +228,9 @@ def test_a_fit_in_volts_and_micrometres(capsys, tmp_path):
     assert code == 0, err
     found = presets.load(tmp_path / "found.json")
     assert "mu" in out and found.start_values["mu"] == pytest.approx(2.8e5, rel=1e-8) and found.model == "si"
-    assert "no unit 'µm'; did you mean" in run(capsys, *words, "--units", "us,V,µm")[2]
+    assert "no unit of length 'µm'; did you mean" in run(capsys, *words, *units[:3], "us,V,µm")[2]
+    assert "no unit of time 'V'" in run(capsys, *words, *units[:3], "V,us,um")[2]
+    assert "no unit of stretch 'um'" in run(capsys, *words, "--units", "us,V,um")[2]
     # what is wrong is called as the file calls it
     for row, bad in ((3, "0.2,nan,100"), (4, "0.1,200,100")):
         lines = data.read_text().splitlines()

@@ -89,6 +89,16 @@ def test_a_series_resistance_begins_charged(film):
             film.equilibrium(bad)
 
 
+def test_the_charge_at_the_start_is_that_of_the_start_time(film):
+    values = {"R_s": 1e4, "voltage": 500.0, "V_ac": 100.0, "f_ac": 2e4}
+    start_time = 0.3 / values["f_ac"]
+    film.start(values, at_equilibrium=True, start_time=start_time)
+    charge, stretch, supply = film.get("charge", "lambda", "supply_voltage")
+    assert supply == pytest.approx(500 + 100 * math.sin(2 * math.pi * 0.3))
+    film.start({**values, "R_s": 0.0, "lambda_start": stretch}, start_time=start_time)
+    assert charge == film.get("charge")
+
+
 def test_the_scales_are_those_of_the_reference():
     """The paper's silicone in both units, worked out apart from the package."""
     reference = Path(__file__).resolve().parents[1] / "reference" / "device" / "A_si_dc_step.json"

@@ -102,6 +102,12 @@ def test_bad_data_are_named_by_row_and_column():
         fit(good[:2], good[:2], good[:2], free=["c", "S"])
 
 
+@pytest.mark.parametrize("free, message", [(["c", "c"], "c is free twice"), ([], "no parameter is free")])
+def test_the_free_parameters_are_named_once(free, message):
+    with pytest.raises(ValueError, match=message):
+        fit([0.0, 1.0, 2.0], [0.1, 0.1, 0.1], [1.0, 1.0, 1.0], free=free)
+
+
 def test_bad_files_are_named_by_row_and_column(tmp_path):
     path = tmp_path / "data.csv"
     path.write_text("time, voltage,strech\n0,0.1,1\n0.5,,1\n")

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+import os
 
 import numpy as np
 import pytest
@@ -40,8 +41,8 @@ def test_an_ensemble_does_not_depend_on_the_number_of_threads():
     scenes = {"phi_ac": 0.3, "omega_ac": np.linspace(0.05, 0.3, 500), **SURFACE_EFFECTS}
     reports = []
     one = ensemble(scenes, stop_time=100.0, workers=1)
-    two = ensemble(scenes, stop_time=100.0, workers=2, progress=lambda done, count: reports.append((done, count)))
-    assert one.tobytes() == two.tobytes() and reports == [(500, 500)]
+    two = ensemble(scenes, stop_time=100.0, workers=2, progress=lambda *report: reports.append(report))
+    assert one.tobytes() == two.tobytes() and reports[-1] == (500, 500)
 
 
 @pytest.mark.parametrize("scenes, message", [
@@ -49,10 +50,51 @@ def test_an_ensemble_does_not_depend_on_the_number_of_threads():
     ({"phi": [0.1], "c": [100.0, -1.0]}, "c in row 2 is -1; it must be a number from 0.001"),
     ({"phi": [0.1, 1e6]}, "phi in row 2 is 1e"),
     ({"phi": [[0.1]]}, "dimensions"),
+    ({"lambda_start": [1.0, 0.85], "lambda_min": 0.9}, "lambda_start in row 2 is 0.85; it must lie between"),
 ])  # fmt: skip
 def test_a_bad_value_of_an_ensemble_is_named_by_row_and_column(scenes, message):
     with pytest.raises(ValueError, match=message):
         ensemble(scenes, stop_time=1.0)
+
+
+@pytest.mark.parametrize("workers", [-1, 1.5])
+def test_a_number_of_workers_is_whole_and_not_below_0(workers):
+    with pytest.raises(ValueError, match=f"workers is {workers}"):
+        ensemble({"phi": [0.1]}, stop_time=1.0, workers=workers)
+
+
+def test_an_ensemble_is_followed_in_parts_that_can_be_stopped():
+    # seconds of work, of which an interruption waits for a part only
+    scenes = {"phi_ac": 0.3, "omega_ac": np.linspace(0.05, 0.3, 20_000)}
+    done = []
+
+    def interrupt(so_far, count):
+        done.append(so_far / count)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        ensemble(scenes, stop_time=3000.0, progress=interrupt)
+    assert done[0] <= 256 * (os.cpu_count() or 1) / 20_000
+
+
+@pytest.mark.parametrize("arguments, message", [
+    (([], []), "time has no rows"),
+    (([0.0, 1.0], [0.1]), "voltage has the shape"),
+])  # fmt: skip
+def test_bad_series_are_refused(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        sensitivities({}, *arguments)
+
+
+@pytest.mark.parametrize("options, message", [
+    ({"tolerance": 0.0}, "tolerance is 0; it must be from 1e-14"),
+    ({"at": [[0.5]]}, "at has 2 dimensions"),
+    ({"at": [0.5, math.inf]}, "at in row 2 is inf"),
+    ({"at": [0.5, 0.4]}, "at in row 2 is 0.4; it must"),
+])  # fmt: skip
+def test_bad_options_of_sensitivities_are_refused(options, message):
+    with pytest.raises(ValueError, match=message):
+        sensitivities({}, [0.0, 1.0], [0.1, 0.1], **options)
 
 
 def test_an_unknown_column_gets_a_suggestion():
