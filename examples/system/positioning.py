@@ -17,6 +17,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from fmpy.fmi1 import FMICallException
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssv
 from matplotlib.figure import Figure
@@ -84,7 +85,7 @@ def by_derivatives(coupling: Coupling, stop_time: float, step: float, order: int
 
 
 def errors(ssp: Path, coupling: Coupling, exact: np.ndarray) -> dict[str, dict[float, float]]:
-    """Largest error of the leader's λ at the communication points, by way and step."""
+    """Largest error of the leader's λ at the communication points, by way and step; inf where it diverges."""
     stop_time = FINE_STEP * (len(exact) - 1)
     ways: dict[str, Callable[[float], np.ndarray]] = {FMPY: partial(by_fmpy, ssp, stop_time)}
     for name, order in ORDERS.items():
@@ -93,7 +94,10 @@ def errors(ssp: Path, coupling: Coupling, exact: np.ndarray) -> dict[str, dict[f
     for name, way in ways.items():
         held = name == FMPY or ORDERS[name] == 0
         for step in STEPS + (FINE_STEP,) * held:
-            stretch = way(step)[:, 0]
+            try:
+                stretch = way(step)[:, 0]
+            except FMICallException:  # the voltage leaves its limits, and the actuator refuses it
+                stretch = np.array([np.inf])
             every = round(step / FINE_STEP)
             error = float(np.max(np.abs(stretch - exact[every::every, 0][: len(stretch)])))
             found.setdefault(name, {})[step] = error

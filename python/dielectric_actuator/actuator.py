@@ -138,25 +138,24 @@ class Actuator:
     ) -> None:
         """Reset, set the scene and leave initialization mode, so that the next call can be `advance`.
 
-        What was set before is dropped. A scene that is refused changes nothing: the actuator stays where it was, if
-        its FMU can save its state. `tolerance` is the integrator's relative tolerance (the FMU's default without one).
-        A function in `scene` is evaluated at `start_time`. `at_equilibrium` starts at rest where the scene's voltage
-        and prestress hold the actuator (`equilibrium`): with surface effects λ = 1 is no such place.
+        What was set before is dropped. After a scene that is refused the actuator is at no time: start it again.
+        `tolerance` is the integrator's relative tolerance (the FMU's default without one). A function in `scene` is
+        evaluated at `start_time`. `at_equilibrium` starts at rest where the scene's voltage and prestress hold the
+        actuator (`equilibrium`): with surface effects λ = 1 is no such place.
         """
         values = {name: value(start_time) if callable(value) else value for name, value in scene.items()}
-        with self._kept(always=False):
-            if at_equilibrium:
-                values |= equilibrium.at_rest(self, values, self.equilibrium(values, start_time=start_time), start_time)
-            if not self._fresh:
-                self._fmu.reset()
-            self.messages.clear()
-            self.time = start_time
-            with self._reasons():
-                self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
-            self.set(values)
-            with self._reasons():
-                self._fmu.enterInitializationMode()
-                self._fmu.exitInitializationMode()
+        if at_equilibrium:
+            values |= equilibrium.at_rest(self, values, self.equilibrium(values, start_time=start_time), start_time)
+        if not self._fresh:
+            self._fmu.reset()
+        self.messages.clear()
+        self.time = start_time
+        with self._reasons():
+            self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
+        self.set(values)
+        with self._reasons():
+            self._fmu.enterInitializationMode()
+            self._fmu.exitInitializationMode()
 
     def equilibrium(self, values: Mapping[str, float], *, start_time: float = 0.0) -> float:
         """The smallest stretch at which the actuator rests in equilibrium under `values`, to the last bit.
@@ -167,7 +166,7 @@ class Actuator:
         that runs is not disturbed.
         """
         logged = self.messages.copy()
-        with self._kept(always=True):
+        with self.looking_ahead():
             found = equilibrium.find(self, values, start_time)
         self.messages[:] = logged
         return found
@@ -225,27 +224,14 @@ class Actuator:
     @contextmanager
     def looking_ahead(self) -> Iterator[None]:
         """A block in which the instance may run on; after it, it is again where it was before."""
-        with self._kept(always=True):
-            yield
-
-    @contextmanager
-    def _kept(self, *, always: bool) -> Iterator[None]:
-        """A block after which the instance is again where it was before: in any case, or if the block fails."""
-        saves = self.description.coSimulation.canGetAndSetFMUstate
-        if always and not saves:
-            raise ValueError(f"{self.description.modelName} cannot save its state (canGetAndSetFMUstate)")
-        state = self._fmu.getFMUstate() if saves else None
+        state = self._fmu.getFMUstate()
         before = self._time, self._rounded, self._fresh
-        put_back = saves
         try:
             yield
-            put_back = always
         finally:
-            if put_back:
-                self._fmu.setFMUstate(state)
-                self._time, self._rounded, self._fresh = before
-            if saves:
-                self._fmu.freeFMUstate(state)
+            self._fmu.setFMUstate(state)
+            self._fmu.freeFMUstate(state)
+            self._time, self._rounded, self._fresh = before
 
     def save(self) -> SavedState:
         """The whole state, for `restore` of any instance of the same FMU in this or a later process."""

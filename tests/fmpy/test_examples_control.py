@@ -10,6 +10,7 @@ import pytest
 
 import controllers
 import loop
+import pages
 from quasi_static import squared_voltages
 
 REPOSITORY = Path(__file__).resolve().parents[2]
@@ -72,8 +73,10 @@ def test_the_loops_do_what_the_page_says(fmu_path, tmp_path):
     rows = [line.split() for line in done.stdout.splitlines() if line[:1] in "12"]
     deviations = {(float(row[0]), row[1]): float(row[-2]) for row in rows}
     assert set(deviations) == {(period, name) for period in (1.0, 2.0) for name in ("PID", "predictive")}
-    for period in (1.0, 2.0):
-        assert deviations[period, "predictive"] < deviations[period, "PID"] < 5e-3
+    for period, cells in pages.table(EXAMPLE / "README.md", "Sampling period").items():
+        if period in "12":
+            found = [deviations[float(period), name] for name in ("PID", "predictive")]
+            assert found == pytest.approx([float(cell) for cell in cells[:2]], rel=0.1)
     ends = dict(line.split(": ") for line in done.stdout.splitlines() if line.startswith("target beyond the fold"))
     assert len(ends) == 3
     for name, end in ends.items():
