@@ -141,6 +141,9 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
 
 def main() -> None:
     options = arguments()
+    whole = options.cases == ",".join(case.name for case in ALL_CASES)
+    if not whole and (options.records is None or options.figures == FIGURES):
+        raise SystemExit("a part of the cases does not make the record: name other places with --records and --figures")
     with tempfile.TemporaryDirectory() as folder:
         rivals = Rivals(options.program, options.fmu, Path(folder), options.van_der_pol)
         for name, reason in rivals.missing.items():
@@ -175,8 +178,7 @@ def main() -> None:
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")
-    whole = options.cases == ",".join(case.name for case in ALL_CASES) and rivals.heyoka is not None
-    if whole and options.records is None:
+    if whole and rivals.heyoka is not None and options.records is None:
         page.PAGE.write_text(page.renewed(page.PAGE.read_text(), target))
         written.append(page.PAGE)
     print("\n" + text)

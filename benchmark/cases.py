@@ -114,3 +114,13 @@ def random_cases() -> tuple[Case, ...]:
 
 
 ALL_CASES = (*CASES, *random_cases())
+
+
+DEVICE_SCENES = {
+    "plain": ("A_si_dc_step", "plain, the paper's silicone"),
+    "viscous": ("D_kv_step", "viscous, ζ = .054"),
+    "comparable": ("B_rc_step", "RC an eighth of the period"),
+    "stiff": ("own_stiff_rc", "RC a millionth of the period"),
+    "branches": ("F_sls_creep_vhb", "three Maxwell branches, 245 periods"),
+}
+"""Of the real device: the scene in tests/reference/device and the title, by name."""

@@ -19,17 +19,20 @@ import sys
 import tempfile
 import time
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import fmpy
 import numpy as np
 
+import page
 import plots
+import ratios
 import records
-from cases import HERE, ROOT
+from cases import DEVICE_SCENES, HERE, ROOT
 from programs import C_FLAGS
+from python_rivals import HEYOKA_TOLERANCES, LOST, seconds_of
 
 sys.path.insert(0, str(ROOT / "studies"))
 
@@ -39,22 +42,9 @@ FMU = ROOT / "target" / "fmu" / "DielectricElastomerActuatorSI.fmu"
 FIGURE = ROOT / "docs" / "figures" / "benchmark_device.png"
 FIELDS = ("method", "tolerance", "nanoseconds", "error", "note")
 LIBRARIES = ("cvode", "arkode", "nvecserial", "sunnonlinsolfixedpoint", "sunlinsoldense", "sunmatrixdense")
-HEYOKA_TOLERANCES = tuple(10.0**-k for k in range(3, 16))
 RADAU_TOLERANCES = tuple(10.0**-k for k in range(3, 13))
-LOST = 0.1
-"""A run further off than this does not follow the motion at all."""
-
 LONGEST = 3.0
 """Seconds of one run that end the sweep of its method."""
-
-SCENES = {
-    "plain": ("A_si_dc_step", "plain, the paper's silicone"),
-    "viscous": ("D_kv_step", "viscous, ζ = .054"),
-    "comparable": ("B_rc_step", "RC an eighth of the period"),
-    "stiff": ("own_stiff_rc", "RC a millionth of the period"),
-    "branches": ("F_sls_creep_vhb", "three Maxwell branches, 245 periods"),
-}
-"""Scene of the reference and title, by name."""
 
 VACUUM = 8.8541878188e-12
 
@@ -72,7 +62,7 @@ class Device:
 
     @classmethod
     def of(cls, name: str) -> Device:
-        scene = device_scene(SCENES[name][0])
+        scene = device_scene(DEVICE_SCENES[name][0])
         values = scene.start
         modulus, density, thickness, side = (values[key] for key in ("mu", "rho", "H", "L"))
         permittivity = VACUUM * values["eps_r"]
@@ -185,19 +175,11 @@ def compiled(program: Path, library: Path, description, device: Device, folder: 
     return found
 
 
-def timed(run: Callable[[], object], seconds: float, least: float) -> float:
-    """Seconds of one run, the least of several that take `least` together; once where one takes long."""
-    repeats = 0 if seconds > LONGEST else min(50, max(1, round(least / max(seconds, 1e-9))))
-    best = seconds
-    for _ in range(repeats):
-        begin = time.thread_time()
-        run()
-        best = min(best, time.thread_time() - begin)
-    return best
-
-
 class Heyoka:
-    """heyoka's adaptive Taylor integrators, compiled once for each scene and tolerance; that is not counted."""
+    """heyoka's adaptive Taylor integrators, compiled once for each scene and tolerance; that is not counted.
+
+    What a call that goes nowhere takes is taken off.
+    """
 
     def __init__(self):
         self._compiled: dict[tuple[str, float], object] = {}
@@ -205,7 +187,8 @@ class Heyoka:
     def rows(self, device: Device, milliseconds: int) -> Iterator[dict]:
         import heyoka
 
-        exact = device.exact
+        times, start = np.concatenate([[0.0], device.exact[:, 0]]), np.array(device.start)
+        least = 1e-3 * milliseconds
         for tolerance in HEYOKA_TOLERANCES:
             key = (device.name, tolerance)
             if key not in self._compiled:
@@ -216,18 +199,19 @@ class Heyoka:
                 assert len(variables) == count
                 system = list(zip(variables, device.slopes(variables)))
                 self._compiled[key] = heyoka.taylor_adaptive(system, device.start, tol=tolerance)
-            integrator = self._compiled[key]
 
-            def run(integrator=integrator):
+            def run(times, integrator=self._compiled[key]):
                 integrator.time = 0.0
-                integrator.state[:] = device.start
-                return integrator.propagate_grid(np.concatenate([[0.0], exact[:, 0]]))[-1][1:]
+                integrator.state[:] = start
+                return integrator.propagate_grid(times)[-1]
 
             begin = time.thread_time()
-            error = device.error(run())
-            seconds = time.thread_time() - begin
-            yield row_of("heyoka", tolerance, error, timed(run, seconds, 1e-3 * milliseconds))
-            if seconds > LONGEST:
+            error = device.error(run(times)[1:])
+            seconds = single = time.thread_time() - begin
+            if error <= LOST and single <= LONGEST:
+                seconds = seconds_of(least, lambda: run(times)) - seconds_of(least, lambda: run(times[:1]))
+            yield row_of("heyoka", tolerance, error, seconds)
+            if single > LONGEST:
                 return
 
 
@@ -262,36 +246,19 @@ def row_of(method: str, tolerance: float, error: float, seconds: float) -> dict:
     return {**empty, "note": "not timed: another motion"}
 
 
-def table(rows: list[dict]) -> str:
-    """Milliseconds of a run for errors of 1e-6, 1e-9 and 1e-12, interpolated between measurements."""
-    methods = list(dict.fromkeys(row["method"] for row in rows))
-    lines = ["| Scene | Error | " + " | ".join(methods) + " |", "|---|---|" + "---|" * len(methods)]
-    for name, (_, title) in SCENES.items():
-        for wanted in (1e-6, 1e-9, 1e-12):
-            cells = []
-            for method in methods:
-                points = sorted(
-                    (float(row["error"]), float(row["nanoseconds"]))
-                    for row in rows
-                    if (row["case"], row["method"]) == (name, method) and row["nanoseconds"] not in ("", None)
-                )
-                # the cheapest of those that are exact enough
-                good = [nanoseconds for error, nanoseconds in points if error <= wanted]
-                cells.append(f"{1e-6 * min(good):.3g}" if good else "–")
-            lines.append(f"| {title} | {wanted:.0e} | " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
-
-
 def main() -> None:
     """Measure, record, draw, print."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--fmu", type=Path, default=FMU, help="the packed FMU in SI units")
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--milliseconds", type=int, default=10, help="least time of a measurement")
-    parser.add_argument("--scenes", default=",".join(SCENES))
+    parser.add_argument("--scenes", default=",".join(DEVICE_SCENES))
     parser.add_argument("--records", type=Path, help="folder instead of benchmark/records")
     parser.add_argument("--figure", type=Path, default=FIGURE)
     options = parser.parse_args()
+    whole = options.scenes == ",".join(DEVICE_SCENES)
+    if not whole and (options.records is None or options.figure == FIGURE):
+        parser.error("a part of the scenes does not make the record: name another place with --records and --figure")
     facts = records.machine()
     heyoka = Heyoka()
     raw: list[dict] = []
@@ -312,7 +279,7 @@ def main() -> None:
                 raw += [{**about, **row} for row in found]
     facts |= {
         "rounds": f"{options.rounds}, SciPy 1; methods in turn in each, the fastest counts",
-        "nanoseconds": "of a whole run over the times of the reference, setting up included",
+        "nanoseconds": "of a whole run over the times of the reference, setting up included; heyoka less an idle call",
         "error": "largest of stretch, rate and charge, the last two over their largest value",
         "SUNDIALS": version,
         "C side": " ".join(C_FLAGS),
@@ -322,11 +289,14 @@ def main() -> None:
     written = [
         records.write(target / "device_raw.csv", facts, raw),
         records.write(target / "device.csv", facts, best),
-        plots.device(best, {name: title for name, (_, title) in SCENES.items()}, options.figure),
+        plots.device(best, {name: title for name, (_, title) in DEVICE_SCENES.items()}, options.figure),
     ]
-    text = table(best)
+    text = ratios.device_table(best) + "\n"
     tables = target / "device.md"
     tables.write_text("# Real device, milliseconds of a run\n\n" + text)
+    if whole and options.records is None:
+        page.PAGE.write_text(page.renewed(page.PAGE.read_text(), target))
+        written.append(page.PAGE)
     print("\n" + text + "\nwritten:", *map(str, [*written, tables]), sep="\n  ")
 
 

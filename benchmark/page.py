@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 from cases import CASES, HERE, ROOT, random_cases
-from ratios import LEVELS, ensemble_table, markdown, ratio, skip_table, times, with_summary
+from ratios import LEVELS, device_table, ensemble_table, markdown, ratio, skip_table, times, with_summary
 from records import read
 
 PAGE = ROOT / "docs" / "performance.md"
@@ -129,6 +129,7 @@ def tables(record: Path) -> list[str]:
         "ensemble.csv": (ensemble_table,),
         "co_simulation.csv": (communication_steps,),
         "skips.csv": (skip_table,),
+        "device.csv": (device_table,),
     }
     of_record = [table(read(record / name)[1]) for name, makers in made.items() for table in makers]
     return [*of_record, processors()]

@@ -7,7 +7,7 @@ import math
 import statistics
 from collections.abc import Iterable
 
-from cases import CASES, random_cases
+from cases import CASES, DEVICE_SCENES, random_cases
 
 LEVELS = (1e-6, 1e-9, 1e-12)
 RIVAL = "heyoka"
@@ -64,6 +64,18 @@ def markdown(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "\n".join([head, "|---" * (head.count("|") - 1) + "|", *body])
 
 
+def device_table(rows: list[dict]) -> str:
+    """Markdown: milliseconds of a run of the real device at equal error, one row a scene and error."""
+    names = methods(rows)
+    lines = []
+    for letter, (scene, (_, title)) in zip("abcde", DEVICE_SCENES.items()):
+        for level in LEVELS:
+            found = (time_at(curve(rows, scene, method), level) for method in names)
+            cells = ("–" if nanoseconds is None else f"{1e-6 * nanoseconds:.3g}" for nanoseconds in found)
+            lines.append([f"{title} ({letter})" if level == LEVELS[0] else "", f"{level:g}", *cells])
+    return markdown(["Scene", "Error", *names], lines)
+
+
 def methods(rows: list[dict]) -> list[str]:
     return list(dict.fromkeys(row["method"] for row in rows))
 
@@ -117,6 +129,8 @@ def ensemble_table(rows: list[dict]) -> str:
     """Markdown: nanoseconds for each scene, scenes in a second on one core, and the error."""
     lines = []
     for row in rows:
+        if row["nanoseconds"] in ("", None):
+            continue
         nanoseconds, error = float(row["nanoseconds"]), float(row["error"])
         about = [f"{row['method']}, {row['inputs']}", f"{float(row['tolerance']):g}"]
         lines.append([*about, f"{nanoseconds:.3g}", f"{1e9 / nanoseconds:.3g}", f"{error:.0e}"])

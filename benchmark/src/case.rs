@@ -7,6 +7,15 @@ use crate::fmu::Fmu;
 /// Position and rate.
 pub type Pair = [f64; 2];
 
+/// The larger error; NaN, which must not pass for a small one, if either is.
+pub fn larger(worst: f64, error: f64) -> f64 {
+    if error <= worst || worst.is_nan() {
+        worst
+    } else {
+        error
+    }
+}
+
 /// One motion from rest at λ = 1 with its reference.
 #[derive(Clone, Debug)]
 pub struct Case {
@@ -67,8 +76,7 @@ impl Case {
             .iter()
             .zip(&self.exact)
             .flat_map(|(state, exact)| state.iter().zip(exact).map(|(a, b)| (a - b).abs()));
-        // A NaN must not pass for a small error.
-        differences.fold(0.0, |worst, d| if d <= worst { worst } else { d })
+        differences.fold(0.0, larger)
     }
 
     /// The right-hand side for the rivals.

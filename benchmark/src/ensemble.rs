@@ -6,7 +6,7 @@ use std::time::Duration;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sweep::{self, Outcome};
 
-use crate::case::Case;
+use crate::case::{Case, larger};
 use crate::row::Row;
 use crate::timing::seconds_per_call;
 
@@ -17,6 +17,9 @@ pub const SCENES: usize = 64;
 const TIME: f64 = 2000.0;
 
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
+
+/// Tolerances that an error may have; heyoka's side has the same.
+const ALLOWED: f64 = 100.0;
 
 /// Times both ways at each tolerance; nanoseconds for each scene. The error is that of the state at
 /// the end and of the extremes, against a run alone at a tolerance of 1e-14.
@@ -36,7 +39,10 @@ pub fn run(case: &Case, least: Duration) {
         let ways: [(&str, Follow); 2] = [("ours, ensemble", &many), ("ours, one by one", &one)];
         for (method, follow) in ways {
             let error = error(&follow(tolerance), &exact);
-            assert!(error < 1e-3, "{method} at {tolerance:e}: error {error:e}");
+            assert!(
+                error <= ALLOWED * tolerance,
+                "{method} at {tolerance:e}: error {error:e}"
+            );
             let seconds = seconds_per_call(least, || {
                 black_box(follow(tolerance));
             });
@@ -80,5 +86,6 @@ fn error(outcomes: &[Outcome], exact: &[Outcome]) -> f64 {
     let pairs = outcomes.iter().zip(exact);
     pairs
         .flat_map(|(one, other)| numbers(one).into_iter().zip(numbers(other)))
-        .fold(0.0, |worst, (one, other)| (one - other).abs().max(worst))
+        .map(|(one, other)| (one - other).abs())
+        .fold(0.0, larger)
 }

@@ -43,6 +43,11 @@ pub fn run(case: &Case, least: Duration) {
     for mut skip in skips {
         let (skipped, full) = ((skip.skipped)(), (skip.full)());
         let difference = (skipped - full).abs();
+        assert!(
+            difference <= skip.tolerance,
+            "{}: the results differ by {difference:e}",
+            skip.name
+        );
         let runs = [
             ("skipped", &mut skip.skipped),
             ("not skipped", &mut skip.full),

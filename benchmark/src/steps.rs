@@ -3,7 +3,7 @@
 use std::hint::black_box;
 use std::time::Duration;
 
-use crate::case::{Case, Pair};
+use crate::case::{Case, Pair, larger};
 use crate::fmu::Fmu;
 use crate::host::Host;
 use crate::rivals::one_step;
@@ -169,7 +169,7 @@ fn unchanged(plan: &Plan, tolerance: f64, least: Duration) {
     for call in 0..plan.calls {
         host.step(call as f64 * step, step);
         if let Some(index) = plan.compared(call) {
-            error = error.max(distance(host.state(), case.exact[index]));
+            error = larger(error, distance(host.state(), case.exact[index]));
         }
     }
     let mut row = Row {
@@ -223,8 +223,8 @@ fn changing(plan: &Plan, name: &str, order: usize, least: Duration) {
             host.step(call as f64 * step, step);
             if let Some(index) = plan.compared(call as u64) {
                 let state = host.state();
-                error = error.max(distance(state, independent[compared]));
-                hold_error = hold_error.max(distance(state, case.exact[index]));
+                error = larger(error, distance(state, independent[compared]));
+                hold_error = larger(hold_error, distance(state, case.exact[index]));
                 compared += 1;
             }
         }
@@ -277,5 +277,5 @@ fn independent(plan: &Plan, inputs: &[[f64; 4]], order: usize) -> Vec<Pair> {
 }
 
 fn distance(one: Pair, other: Pair) -> f64 {
-    (one[0] - other[0]).abs().max((one[1] - other[1]).abs())
+    larger((one[0] - other[0]).abs(), (one[1] - other[1]).abs())
 }

@@ -44,8 +44,9 @@ class Run:
 
     @property
     def ended_by(self) -> int:
-        """A whole time by which the run had ended: the last row is before a collapse."""
-        return math.ceil(self.rows["time"][-1])
+        """A whole time by which the run had ended: the last row is a sampling period before a collapse."""
+        times = self.rows["time"]
+        return math.ceil(times[-1] + (times[1] - times[0] if self.pulled_in else 0.0))
 
     def deviation(self, start_time: float) -> float:
         """Root mean square of target − λ from `start_time` on."""
