@@ -118,7 +118,7 @@ ALL_CASES = (*CASES, *random_cases())
 
 DEVICE_SCENES = {
     "plain": ("A_si_dc_step", "plain, the paper's silicone"),
-    "viscous": ("D_kv_step", "viscous, ζ = .054"),
+    "viscous": ("D_kv_step", "viscous, ζ = 0.054"),
     "comparable": ("B_rc_step", "RC an eighth of the period"),
     "stiff": ("own_stiff_rc", "RC a millionth of the period"),
     "branches": ("F_sls_creep_vhb", "three Maxwell branches, 245 periods"),

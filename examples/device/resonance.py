@@ -28,10 +28,10 @@ from film import FILM
 
 REFERENCE = options.ROOT / "tests" / "reference" / "device" / "ac_steady_state.json"
 STRONG = {"voltage": 0.0, "V_ac": 4000.0, "eta": 5.0}
-"""A damping ratio of .054: one steady state at each frequency."""
+"""A damping ratio of 0.054: one steady state at each frequency."""
 
 WEAK = {"voltage": 0.0, "V_ac": 2500.0, "eta": 0.8}
-"""A damping ratio of .0087: two at some."""
+"""A damping ratio of 0.0087: two at some."""
 
 SAMPLES = 64
 """Of one period of the voltage."""

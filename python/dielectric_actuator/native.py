@@ -171,9 +171,9 @@ def parts(
     if not (math.isfinite(stop_time) and stop_time > 0):
         raise ValueError(f"stop_time is {stop_time:g}; it must be a number above 0")
     _check_tolerance(tolerance)
-    if not (isinstance(workers, int) and workers >= 0):
+    if not (isinstance(workers, (int, np.integer)) and workers >= 0):
         raise ValueError(f"workers is {workers}; it must be a whole number above 0, or 0 for one a core")
-    threads = workers or os.cpu_count() or 1
+    threads = int(workers) or os.cpu_count() or 1
 
     def followed() -> Iterator[np.ndarray]:
         start, chunks = 0, threads

@@ -33,8 +33,8 @@ pub const LANES: usize = 8;
 /// A number for each lane.
 pub type PerLane = [f64; LANES];
 
-/// From this tolerance on the method looks back on 9 values, below on 10. By 8 it takes .8 to .9 of the time at 1e-4
-/// and 1e-6, with 3 to 40 times the error. By 11 it takes .93 to 1 of the time where f hardly depends on x', and twice
+/// From this tolerance on the method looks back on 9 values, below on 10. By 8 it takes 0.8 to 0.9 of the time at 1e-4
+/// and 1e-6, with 3 to 40 times the error. By 11 it takes 0.93 to 1 of the time where f hardly depends on x', and twice
 /// the time where it does: the more values, the less is stable.
 const LOOSE: f64 = 3e-10;
 

@@ -233,8 +233,8 @@ impl LaneStates {
         let mut position = begin - miss * fill(formula.miss_twice);
         let mut way = load(&self.rate) * step - miss * fill(formula.miss_once);
         let mut f = load(&self.f[HISTORY - 1]);
-        // Two steps share what they load, and nothing else is done here, for which registers would be too few: .68 to
-        // .8 of the time on AVX2.
+        // Two steps share what they load, and nothing else is done here, for which registers would be too few: 0.68 to
+        // 0.8 of the time on AVX2.
         for i in (0..BLOCK).step_by(2) {
             let mut sums = [[fill(0.0); 2]; 2];
             for back in (0..POINTS).rev() {

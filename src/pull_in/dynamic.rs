@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn at_rest_the_curve_has_the_equilibrium_voltage() {
-        // γ = .25, τ = .5, E = .75, S = .125, all exact in binary.
+        // γ = 0.25, τ = 0.5, E = 0.75, S = 0.125, all exact in binary.
         let coefficients = Coefficients {
             inertia: 100.0,
             linear: 1.0 + 0.5 - 1.0 + 0.75,

@@ -6,7 +6,7 @@
 //! [`super::collocation`], nothing is gained by folding them into pairs.
 //!
 //! Gain over an endpoint-only step of 8 nodes: two thirds of the time. With the voltage set at each step and the
-//! stretch read, a step of .01 takes 44 ns, one of 1, which is too long for 4 nodes, 135 (packed FMU, tolerance 1e-6,
+//! stretch read, a step of 0.01 takes 44 ns, one of 1, which is too long for 4 nodes, 135 (packed FMU, tolerance 1e-6,
 //! AVX2, AMD EPYC family 25).
 
 use fearless_simd::{Level, Simd, dispatch, f64x4};

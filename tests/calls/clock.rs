@@ -22,7 +22,7 @@ fn step(host: &Host, time: f64, step: f64) {
     assert_eq!(host.step(time, step), OK, "{}", host.last_line());
 }
 
-/// The clocks of hosts that step by .02: by what they do from one step to the next.
+/// The clocks of hosts that step by 0.02: by what they do from one step to the next.
 type Clock = fn(f64, u32, f64) -> f64;
 const H: f64 = 0.02;
 const CLOCKS: [(&str, Clock); 5] = [
