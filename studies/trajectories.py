@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import NamedTuple
 
 import references
@@ -40,5 +41,5 @@ def follow(actuator: Actuator, name: str, communication_step: float, tolerance: 
             actuator.advance(remainder)
         for quantity, exact in (("lambda", row["lam"]), ("lambda_dot", row["v"])):
             found = Worst(quantity, row["t"], exact, actuator.get(quantity))
-            worst = max(worst, found, key=lambda candidate: candidate.error)
+            worst = max(worst, found, key=lambda candidate: (math.isnan(candidate.error), candidate.error))
     return worst

@@ -15,6 +15,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from device_scenes import PLAIN, REFERENCE, SCENES, device_scene
 from dielectric_actuator import Actuator, packed_fmu
 
@@ -49,6 +51,11 @@ class Errors(NamedTuple):
     balance: float
 
 
+def largest_of(*errors: float) -> float:
+    """The largest size; NaN if one is NaN, which `max` may leave out."""
+    return float(np.abs(errors).max())
+
+
 def errors(actuator: Actuator, name: str, tolerance: float) -> Errors:
     """A scene of the reference, in one communication step from each of its times to the next."""
     scene = device_scene(name)
@@ -71,16 +78,16 @@ def errors(actuator: Actuator, name: str, tolerance: float) -> Errors:
         if row["t_s"] > actuator.time:
             actuator.advance(row["t_s"] - actuator.time)
             actuator.time = row["t_s"]
-        off_stretch = max(off_stretch, abs(actuator.get("lambda") - row["lambda"]))
+        off_stretch = largest_of(off_stretch, actuator.get("lambda") - row["lambda"])
         for variable, column in RELATIVE.items():
-            off[variable] = max(off[variable], abs(actuator.get(variable) - row[column]) / sizes[variable])
+            off[variable] = largest_of(off[variable], (actuator.get(variable) - row[column]) / sizes[variable])
         found = {variable: value - booked[variable] for variable, value in zip(ENERGIES, actuator.get(*ENERGIES))}
-        energy = max(energy, *map(abs, found.values()))
+        energy = largest_of(energy, *found.values())
         known = [(variable, column) for variable, column in ENERGIES.items() if column in row]
-        off_energy = max([off_energy, *(abs(found[variable] - row[column]) for variable, column in known)])
+        off_energy = largest_of(off_energy, *(found[variable] - row[column] for variable, column in known))
         gain = sum(found[variable] for variable in SUPPLIED) - sum(found[variable] for variable in LOST)
         balance = sum(found[variable] for variable in STORED) - at_start - gain
-        off_balance = max(off_balance, abs(balance))
+        off_balance = largest_of(off_balance, balance)
     rate, charge, current = off.values()
     return Errors(off_stretch, rate, charge, current, off_energy / energy, off_balance / energy)
 
@@ -130,10 +137,10 @@ def published(actuator: Actuator) -> Iterator[Published]:
     actuator.start(SHEET)
     static, dynamic = (actuator.get(name) / scale for name in ("V_pull_in_static", "V_pull_in_dynamic"))
     yield Published(
-        *("Zhao, Suo 2007", "static pull-in of the ideal actuator, field over √(µ/ε)", ".69"),
+        *("Zhao, Suo 2007", "static pull-in of the ideal actuator, field over √(µ/ε)", "0.69"),
         *(math.sqrt(3) * 2 ** (-4 / 3), static),
     )
-    yield Published("Joglekar 2014", "dynamic pull-in of the ideal actuator", ".6470", 0.6469836322448274, dynamic)
+    yield Published("Joglekar 2014", "dynamic pull-in of the ideal actuator", "0.6470", 0.6469836322448274, dynamic)
 
     # of scene I, whose charge scale makes 1.2 µC a nondimensional charge q with λ⁶ = 1 + q²
     held = {**device_scene("I_charge_step").start, "charge_imposed": 1.2e-6}

@@ -110,8 +110,6 @@ fn row<M: Model>(variable: &Variable<M>) -> String {
     )
 }
 
-/// Each member is a variable of the description with a causality of a port, once; the units of force and
-/// motion are those of a work.
 fn infinite_values_are_described<M: Model>() {
     for variable in M::VARIABLES {
         let said = variable.description.contains("+inf");
@@ -126,6 +124,8 @@ fn a_variable_that_may_be_infinite_says_so() {
     infinite_values_are_described::<Si>();
 }
 
+/// Each member is a variable of the description with a causality of a port, once; the units of force and
+/// motion are those of a work.
 #[test]
 fn terminals_name_variables_of_the_table() {
     assert!(description::terminals::xml::<Nondimensional>().is_none());

@@ -3,10 +3,14 @@
 //! Beside these: orbits, splitting of steps, saved states and extremes in
 //! `solver`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
 
+#[path = "largest/mod.rs"]
+mod largest;
+
 use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::model::variables::Kind;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::{VARIABLES, value_reference};
+use largest::largest;
 
 const STEP: f64 = 0.37;
 const STEPS: u32 = 400;
@@ -105,12 +109,8 @@ fn recording_extremes_leaves_the_motion_alone() {
         for (tolerance, step) in [(1e-6, 7.0), (1e-6, STEP), (1e-12, 7.0), (1e-12, STEP)] {
             let plain = states(settings, tolerance, step, |_| {});
             let recorded = states(&recording, tolerance, step, |_| {});
-            let difference = plain
-                .iter()
-                .flatten()
-                .zip(recorded.iter().flatten())
-                .map(|(one, other)| (one - other).abs())
-                .fold(0.0, f64::max);
+            let both = plain.iter().flatten().zip(recorded.iter().flatten());
+            let difference = largest(both.map(|(one, other)| one - other));
             let what = format!("{settings:?}, tolerance {tolerance:e}, steps of {step}");
             assert!(difference < 10.0 * tolerance, "{what}: {difference:e}");
         }

@@ -9,7 +9,7 @@ use std::process::Command;
 
 use anyhow::{Context, Result, ensure};
 use cargo_metadata::semver::Version;
-use cargo_metadata::{DependencyKind, Metadata, Package, PackageId};
+use cargo_metadata::{Metadata, Package};
 use object::BinaryFormat;
 
 use crate::archive::Entries;
@@ -20,6 +20,9 @@ use crate::zig::{Zig, said};
 
 /// Folder in the FMU.
 const FOLDER: &str = "documentation/licenses";
+
+/// What FMI 2.0 has a reader open first. `packaging/release.py` reads the crates from it.
+const LIST: &str = "license.txt";
 
 /// Beginnings, in upper case, of the names of files that hold a licence.
 const NAMES: &[&str] = &[
@@ -68,33 +71,22 @@ pub fn add(
     {
         files.push(("mingw-w64.txt", libraries.join("libc/mingw/COPYING")));
     }
-    for (name, path) in files {
-        let bytes = fs::read(&path).with_context(|| format!("cannot read {}", path.display()))?;
+    for (name, path) in &files {
+        let bytes = fs::read(path).with_context(|| format!("cannot read {}", path.display()))?;
         entries.insert(format!("{FOLDER}/{name}"), bytes);
     }
+    let others: Vec<&str> = files.iter().skip(2).map(|(name, _)| *name).collect();
+    let heading = format!(
+        "MIT (LICENSE-MIT.txt) or Apache-2.0 (LICENSE-APACHE.txt), at your choice.\n\n\
+         Linked into the binaries: {}, which are files beside this one, and these crates.",
+        others.join(", ")
+    );
+    let linked = linked(project, platforms, package.name.as_str())?;
     entries.insert(
-        format!("{FOLDER}/crates.txt"),
-        crates(project, platforms, package)?.into(),
+        format!("{FOLDER}/{LIST}"),
+        listed(&heading, &linked)?.into(),
     );
     Ok(())
-}
-
-/// Every linked crate with its version and licence, then the texts, each once.
-fn crates(project: &Metadata, platforms: &[&Platform], package: &Package) -> Result<String> {
-    let mut linked = Linked::new();
-    for platform in platforms {
-        let resolved = library::resolve(project, platform)?;
-        for package in linked_packages(&resolved, package)? {
-            linked.insert(
-                (package.name.to_string(), package.version.clone()),
-                package.clone(),
-            );
-        }
-    }
-    listed(
-        "Crates that are linked into the binaries, with their licences.",
-        &linked,
-    )
 }
 
 /// What the live page has to say of the crates in its WebAssembly, and of our own licences.
@@ -102,36 +94,7 @@ fn crates(project: &Metadata, platforms: &[&Platform], package: &Package) -> Res
 /// # Errors
 /// If cargo does not tell which they are, or a licence cannot be read.
 pub fn of_the_page(project: &Metadata, browser: &Platform, package: &str) -> Result<String> {
-    let answer = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .current_dir(&project.workspace_root)
-        .args(["tree", "--locked", "--package", package])
-        .args(["--target", browser.triple])
-        .args(["--edges", "normal,no-proc-macro"])
-        .args(["--prefix", "none", "--format", "{p}"])
-        .output()
-        .context("cannot start cargo")?;
-    ensure!(answer.status.success(), "cargo tree: {}", said(&answer));
-    let tree = String::from_utf8(answer.stdout).context("cargo answered no text")?;
-    // Lines such as "serde v1.0.228 (*)".
-    let inside: BTreeSet<(&str, &str)> = tree
-        .lines()
-        .filter_map(|line| {
-            let mut words = line.split(' ');
-            Some((words.next()?, words.next()?.strip_prefix('v')?))
-        })
-        .collect();
-    let resolved = library::resolve(project, browser)?;
-    let linked: Linked = resolved
-        .packages
-        .iter()
-        .filter(|one| one.source.is_some())
-        .filter(|one| inside.contains(&(one.name.as_str(), &*one.version.to_string())))
-        .map(|one| ((one.name.to_string(), one.version.clone()), one.clone()))
-        .collect();
-    ensure!(
-        !linked.is_empty(),
-        "{package} is linked with nothing: {tree}"
-    );
+    let linked = linked(project, &[browser], package)?;
     let mut text = String::from(
         "The page and the actuator in it: MIT or Apache-2.0, at your choice. Rust's standard \
          library, of which parts are in the WebAssembly: the same.\n\n",
@@ -148,6 +111,45 @@ pub fn of_the_page(project: &Metadata, browser: &Platform, package: &str) -> Res
 
 /// Packages by name and version.
 type Linked = BTreeMap<(String, Version), Package>;
+
+/// The crates of others that are linked into a package for the platforms: normal dependencies, no compile-time ones.
+/// Cargo's tree tells which; its metadata has the features that any member of the workspace asks for.
+fn linked(project: &Metadata, platforms: &[&Platform], package: &str) -> Result<Linked> {
+    let mut linked = Linked::new();
+    for platform in platforms {
+        let answer = Command::new(env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
+            .current_dir(&project.workspace_root)
+            .args(["tree", "--locked", "--package", package])
+            .args(["--target", platform.triple])
+            .args(["--edges", "normal,no-proc-macro"])
+            .args(["--prefix", "none", "--format", "{p}"])
+            .output()
+            .context("cannot start cargo")?;
+        ensure!(answer.status.success(), "cargo tree: {}", said(&answer));
+        let tree = String::from_utf8(answer.stdout).context("cargo answered no text")?;
+        // Lines such as "serde v1.0.228 (*)".
+        let inside: BTreeSet<(&str, &str)> = tree
+            .lines()
+            .filter_map(|line| {
+                let mut words = line.split(' ');
+                Some((words.next()?, words.next()?.strip_prefix('v')?))
+            })
+            .collect();
+        linked.extend(
+            library::resolve(project, platform)?
+                .packages
+                .into_iter()
+                .filter(|one| one.source.is_some())
+                .filter(|one| inside.contains(&(one.name.as_str(), &*one.version.to_string())))
+                .map(|one| ((one.name.to_string(), one.version.clone()), one)),
+        );
+    }
+    ensure!(
+        !linked.is_empty(),
+        "cargo tree lists no crate that is linked into {package}"
+    );
+    Ok(linked)
+}
 
 /// The packages with their licences, then the texts, each once.
 fn listed(heading: &str, linked: &Linked) -> Result<String> {
@@ -188,39 +190,6 @@ fn listed(heading: &str, linked: &Linked) -> Result<String> {
     Ok(list)
 }
 
-/// The packages below `root` that are linked: normal dependencies, no compile-time ones.
-fn linked_packages<'a>(resolved: &'a Metadata, root: &Package) -> Result<Vec<&'a Package>> {
-    let packages: BTreeMap<&PackageId, &Package> = resolved
-        .packages
-        .iter()
-        .map(|package| (&package.id, package))
-        .collect();
-    let graph = resolved
-        .resolve
-        .as_ref()
-        .context("cargo resolved nothing")?;
-    let mut seen = BTreeSet::new();
-    let mut ahead = vec![&root.id];
-    while let Some(id) = ahead.pop() {
-        let compile_time = packages[id]
-            .targets
-            .iter()
-            .any(|target| target.is_proc_macro());
-        if compile_time || !seen.insert(id) {
-            continue;
-        }
-        let node = graph.nodes.iter().find(|node| &node.id == id);
-        for dependency in node.into_iter().flat_map(|node| &node.deps) {
-            let normal = |kind: &cargo_metadata::DepKindInfo| kind.kind == DependencyKind::Normal;
-            if dependency.dep_kinds.iter().any(normal) {
-                ahead.push(&dependency.pkg);
-            }
-        }
-    }
-    seen.remove(&root.id);
-    Ok(seen.into_iter().map(|id| packages[id]).collect())
-}
-
 /// The files of a crate that hold a licence, by name.
 fn licence_files(package: &Package) -> Result<Vec<PathBuf>> {
     let folder = package
@@ -241,4 +210,32 @@ fn licence_files(package: &Package) -> Result<Vec<PathBuf>> {
     }
     files.sort();
     Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::platform::PLATFORMS;
+    use crate::{page, project};
+
+    fn names(platforms: &[&Platform], package: &str) -> Result<BTreeSet<String>> {
+        let linked = linked(&project()?, platforms, package)?;
+        Ok(linked.into_keys().map(|(name, _)| name).collect())
+    }
+
+    /// The packager asks for `zip`, the library for `fmi` and Windows for `windows-link`; none of them is in the page.
+    #[test]
+    fn what_another_package_or_platform_asks_for_is_not_linked() -> Result<()> {
+        let page = names(&[&page::BROWSER], page::PACKAGE)?;
+        let linux = names(&[&PLATFORMS[0]], "nondimensional-fmu")?;
+        let both = names(&[&PLATFORMS[0], &PLATFORMS[1]], "nondimensional-fmu")?;
+        let native = names(&[&PLATFORMS[0]], "dielectric-actuator-native")?;
+        assert!(page.contains("nalgebra") && !page.contains("fmi") && !page.contains("libc"));
+        assert!(linux.contains("fmi") && !linux.contains("rayon") && native.contains("rayon"));
+        assert!(page.is_subset(&linux) && linux.is_subset(&both) && linux != both);
+        for built_with in ["serde_derive", "bindgen", "proptest", "clap", "page-core"] {
+            assert!(!both.contains(built_with), "{built_with}");
+        }
+        Ok(())
+    }
 }

@@ -19,10 +19,10 @@ use crate::zig::said;
 pub const NAME: &str = "actuator.html";
 
 /// The package that becomes the WebAssembly.
-const PACKAGE: &str = "page-core";
+pub const PACKAGE: &str = "page-core";
 
 /// What a browser is to the compiler. It gets no binary of its own in the FMU.
-const BROWSER: Platform = Platform {
+pub const BROWSER: Platform = Platform {
     folder: "",
     triple: "wasm32-unknown-unknown",
     zig_target: "wasm32-freestanding",

@@ -1,5 +1,5 @@
 // A slider and a box for the number, for each quantity of the device.
-import { QUANTITIES, fault, format, upper } from "./device.js";
+import { QUANTITIES, fault, format, range } from "./device.js";
 
 const STEPS = 1000;
 
@@ -39,30 +39,29 @@ function build_row(quantity, changed) {
   const label = element("label", { htmlFor: key, textContent: name });
   whole.append(label, box, element("span", { className: "unit", textContent: unit }), slider, complaint);
 
-  let range = [0, 1];
-  const fromSlider = (part) =>
-    logarithmic ? range[0] * (range[1] / range[0]) ** part : range[0] + (range[1] - range[0]) * part;
-  const toSlider = (value) =>
-    logarithmic ? Math.log(value / range[0]) / Math.log(range[1] / range[0]) : (value - range[0]) / (range[1] - range[0]);
+  let [low, high] = [0, 1];
+  let device;
+  const fromSlider = (part) => (logarithmic ? low * (high / low) ** part : low + (high - low) * part);
+  const toSlider = (value) => (logarithmic ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low));
   const take = (value) => {
-    const wrong = fault(quantity, value);
+    const wrong = fault(quantity, value, device);
     complaint.textContent = wrong ?? "";
     box.setAttribute("aria-invalid", wrong ? "true" : "false");
     if (!wrong) changed(key, value);
   };
   slider.addEventListener("input", () => {
-    const value = Number((fromSlider(slider.value / STEPS) / factor).toPrecision(4));
+    // With these digits a value leads back to its place on the slider.
+    const value = Number((fromSlider(slider.value / STEPS) / factor).toPrecision(5));
     box.value = value;
     take(value * factor);
   });
   box.addEventListener("change", () => take(box.value === "" ? NaN : Number(box.value) * factor));
   return {
     whole,
-    show(value, device) {
-      range = [quantity.min, upper(quantity, device)];
-      if (document.activeElement !== slider) {
-        slider.value = Math.round(Math.min(1, Math.max(0, toSlider(value))) * STEPS);
-      }
+    show(value, present) {
+      device = present;
+      [low, high] = range(quantity, device);
+      slider.value = Math.round(Math.min(1, Math.max(0, toSlider(value))) * STEPS);
       slider.setAttribute("aria-valuetext", `${format(value / factor)} ${unit}`.trim());
       const shown = String(Number((value / factor).toPrecision(12)));
       if (box.value !== shown) box.value = shown;

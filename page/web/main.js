@@ -1,8 +1,8 @@
 // The page: what is set, the motion under it, and how both are shown.
-import { load as loadActuator } from "./core.js";
+import { actuator } from "./core.js";
 import { build as buildControls } from "./controls.js";
 import { grid, orbit, stretchWindow } from "./curves.js";
-import { LOAD, format, fromAddress, naturalFrequency, toAddress, withPrefix } from "./device.js";
+import { LOAD, format, fromAddress, toAddress, withPrefix } from "./device.js";
 import { draw } from "./membrane.js";
 import { Motion } from "./motion.js";
 import { plot } from "./plots.js";
@@ -15,14 +15,11 @@ const part = (name) => document.getElementById(name);
 const still = matchMedia("(prefers-reduced-motion: reduce)");
 const presetNamed = (wanted) => PRESETS.find(({ name }) => name === wanted);
 
-const actuator = await loadActuator().catch((error) => {
-  say("The actuator does not run in this browser. It needs WebAssembly with vectors, which browsers have had since 2023.");
-  throw error;
-});
 let { device } = presetNamed("silicone_swing");
 let motion;
 let playing = !still.matches;
 let last;
+let writing;
 
 // ---- What is set ----
 
@@ -42,26 +39,40 @@ const showControls = buildControls(part("quantities"), (key, value) => {
   take({ ...device, [key]: value }, !LOAD.has(key));
 });
 
-/** Takes a device; what the model refuses is said, and nothing changes. */
+/** Takes a device. Where the model refuses it, that is said and returned, and nothing changes. */
 function take(wanted, anew) {
-  const before = device;
+  let refusal = "";
   try {
     if (motion && !anew) motion.reload(wanted);
     else if (motion) motion.restart(wanted);
     else motion = new Motion(actuator, wanted);
     device = wanted;
   } catch (error) {
-    say(error.message);
-    device = before;
-    motion?.restart(before);
+    refusal = error.message;
+    motion ??= new Motion(actuator, device);
   }
+  say(refusal);
   showControls(device);
   const address = toAddress(device);
   const found = PRESETS.find((preset) => toAddress(preset.device) === address);
   select.value = found?.name ?? "own";
   part("note").textContent = found?.note ?? "";
-  history.replaceState(null, "", `#${address}`);
   show();
+  clearTimeout(writing);
+  writing = setTimeout(writeAddress, 300);
+  return refusal;
+}
+
+/** The address that holds what is set. */
+const link = () => new URL(`#${toAddress(device)}`, location.href).href;
+
+/** Some time after the last change: browsers refuse more than about 100 addresses in 30 seconds. */
+function writeAddress() {
+  try {
+    history.replaceState(null, "", link());
+  } catch {
+    // The next change writes it again.
+  }
 }
 
 function say(text) {
@@ -78,15 +89,16 @@ part("restart").addEventListener("click", () => {
 });
 part("advance").addEventListener("click", () => {
   setPlaying(false);
-  advance(motion.single);
+  if (!advance(motion.single)) return;
   const reading = (name) => document.querySelector(`[data-reading=${name}]`).textContent;
   say(`Stretch ${reading("stretch")} at ${reading("time")}.`);
 });
 part("share").addEventListener("click", async () => {
   try {
-    await navigator.clipboard.writeText(location.href);
+    await navigator.clipboard.writeText(link());
     say("The link is copied; it holds all that is set.");
   } catch {
+    writeAddress();
     say("Copy the address of this page: it holds all that is set.");
   }
 });
@@ -97,21 +109,33 @@ function setPlaying(wanted) {
   part("play").textContent = playing ? "Pause" : "Play";
 }
 
+/** Whether the motion could be followed for this time; why not, is said. */
 function advance(time) {
+  let went = true;
   try {
     motion.advance(time);
   } catch (error) {
+    went = false;
     setPlaying(false);
     say(error.message);
   }
   show();
+  return went;
 }
+
+/** Periods of the free motion a second. */
+const pace = () => PERIODS_A_SECOND * 10 ** Number(part("pace").value);
+
+function sayPace() {
+  part("pace").setAttribute("aria-valuetext", `${format(pace(), 2)} periods of the free motion a second`);
+}
+part("pace").addEventListener("input", sayPace);
 
 function frame(now) {
   if (playing) {
     const seconds = Math.min((now - (last ?? now)) / 1000, 0.1);
     last = now;
-    if (seconds > 0) advance(seconds * PERIODS_A_SECOND * 10 ** Number(part("pace").value) * motion.period);
+    if (seconds > 0) advance(seconds * pace() * motion.period);
   }
   requestAnimationFrame(frame);
 }
@@ -147,7 +171,7 @@ function show() {
   showSign(now);
   const limit = motion.threshold.dynamic;
   draw(part("membrane"), {
-    device, stretch: now.stretch, highest: get("lambda_highest"), snapped: Boolean(motion.snapped),
+    device, stretch: now.stretch, lowest: get("lambda_lowest"), highest: get("lambda_highest"), snapped: Boolean(motion.snapped),
     charge: Math.abs(get("phi_total")) / (Number.isFinite(limit) && limit > 0 ? limit : 0.7), positive: now.voltage >= 0,
   });
   part("membrane").setAttribute("aria-label", `The membrane, ${format(100 * (now.stretch - 1), 3)} % wider than at rest, ${format(100 / now.stretch ** 2, 3)} % of its thickness.`);
@@ -164,7 +188,7 @@ function showReadings(now) {
     field: ["Field", `${format(((now.voltage * now.stretch ** 2) / device.thickness) * 1e-6)} V/µm`, (now.voltage * now.stretch ** 2) / device.thickness],
     pullIn: ["Pull-in, from rest", withPrefix(motion.threshold.dynamic * voltage, "V"), motion.threshold.dynamic * voltage],
     slowPullIn: ["Pull-in, raised slowly", withPrefix(motion.threshold.static * voltage, "V"), motion.threshold.static * voltage],
-    frequency: ["Own frequency", withPrefix(naturalFrequency(device), "Hz"), naturalFrequency(device)],
+    frequency: ["Own frequency", withPrefix(motion.frequency, "Hz"), motion.frequency],
     time: ["Time", withPrefix(now.time * time, "s"), now.time * time],
   };
   const list = part("readings");
@@ -187,6 +211,8 @@ function showSign(now) {
   const sign = part("sign");
   const [kind, text] = judgement(now);
   if (sign.className === kind && sign.textContent === text) return;
+  // Only a snap interrupts who listens.
+  sign.setAttribute("role", kind === "snapped" ? "alert" : "status");
   sign.className = kind;
   sign.textContent = text;
 }
@@ -196,7 +222,7 @@ function judgement(now) {
   const { snapped, threshold } = motion;
   if (snapped) {
     const when = withPrefix(snapped.time * time, "s", 3);
-    if (snapped.kind === "lost") return ["snapped", `Snap! Pulled in after ${when}: nothing holds the membrane. Restart from rest to try again.`];
+    if (snapped.kind === "lost") return ["snapped", `Snap! Pulled in after ${when}: the membrane is ${format(actuator.get("lambda_max"))} times as wide as at rest, where the motion ends. Restart from rest to try again.`];
     if (snapped.kind === "collapsed") return ["snapped", `Collapsed after ${when}: the membrane has contracted to a needle.`];
     return ["snapped", `Snap! After ${when} the membrane has gone over the top of its barrier.`];
   }
@@ -205,7 +231,7 @@ function judgement(now) {
     return ["near", `Alternating voltage: its force alternates at ${force}. The pull-in voltages below hold for a constant voltage.`];
   }
   const most = threshold.dynamic * voltage;
-  if (!Number.isFinite(most)) return ["near", "No pull-in from rest at any voltage: surface elasticity holds the membrane."];
+  if (!Number.isFinite(most)) return ["near", "No pull-in from rest at any voltage."];
   const left = most - Math.abs(now.voltage);
   if (left < 0) return ["beyond", `${withPrefix(-left, "V", 3)} beyond pull-in from rest.`];
   return ["near", `${withPrefix(left, "V", 3)} to go until pull-in from rest.`];
@@ -267,9 +293,9 @@ function showPlots(now) {
     { x: expanding, y: turning },
     { x: expanding, y: holding },
     level(dynamic, "pull-in", true),
-    slow - dynamic > 0.03 || !Number.isFinite(dynamic) ? level(slow, "raised slowly") : { x: [], y: [] },
+    Math.abs(slow - dynamic) > 0.03 ? level(slow, "raised slowly") : { x: [], y: [] },
     { x: window, y: [Math.abs(now.voltage), Math.abs(now.voltage)] },
-    Number.isFinite(dynamic) ? { x: [motion.fold.dynamic], y: [dynamic * voltage] } : { x: [], y: [] },
+    Number.isFinite(motion.fold.dynamic) ? { x: [motion.fold.dynamic], y: [dynamic * voltage] } : { x: [], y: [] },
     { x: [now.stretch], y: [Math.abs(now.voltage)] },
   ]);
 }
@@ -278,12 +304,13 @@ function showPlots(now) {
 
 function fromHash() {
   const { device: wanted, faults } = fromAddress(location.hash, BASE);
-  if (location.hash.length > 1) take(wanted, true);
-  else take(device, true);
-  if (faults.length > 0) say(`The address could not be followed in all: ${faults.join("; ")}.`);
+  const refusal = take(location.hash.length > 1 ? wanted : device, true);
+  if (refusal) faults.push(refusal);
+  if (faults.length > 0) say(`The address could not be followed in all: ${faults.join(". ")}.`);
 }
 
 setPlaying(playing);
+sayPace();
 fromHash();
 addEventListener("hashchange", fromHash);
 addEventListener("resize", () => show());

@@ -11,14 +11,15 @@ export function roundUp(number) {
   return factor * power;
 }
 
-/** The widest stretch that the view makes room for, so that it does not zoom at each frame. */
-const room = (highest) => [1.5, 2, 2.5, 3, 4, 6, 10].find((one) => one >= highest) ?? 10;
+/** The widest and the thickest membrane over that at rest that the view makes room for, so that it does not zoom at each frame. */
+const widest = (highest) => [1.5, 2, 2.5, 3, 4, 6, 10].find((one) => one >= highest) ?? 10;
+const thickest = (lowest) => [1.25, 2, 4, 10, 40].find((one) => one >= 1 / lowest ** 2) ?? 400;
 
 /**
  * Draws the membrane. `voltage` is the present one over the pull-in voltage or the scale, and sets how
  * densely the charges lie.
  */
-export function draw(canvas, { device, stretch, highest, charge, positive, snapped }) {
+export function draw(canvas, { device, stretch, lowest, highest, charge, positive, snapped }) {
   const ratio = window.devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
@@ -32,24 +33,24 @@ export function draw(canvas, { device, stretch, highest, charge, positive, snapp
   pen.clearRect(0, 0, width, height);
   pen.font = `12px ${getComputedStyle(document.body).fontFamily}`;
   const paint = { pen, colour, stretch, snapped };
-  const wide = room(highest);
+  const wide = widest(highest);
   // The view from above takes a square at the left, the side view the rest.
   const above = Math.min(height - 34, width * 0.4);
   const perMetre = above / (device.side * wide);
   drawAbove(paint, above / 2 + 4, height / 2, device.side * perMetre);
   const left = above + 24;
-  const room_ = width - left - 8;
-  const scale = room_ / (device.side * wide);
+  const room = width - left - 8;
+  const tallest = (height - 70) / thickest(lowest);
+  const scale = Math.min(room / (device.side * wide), tallest / device.thickness);
   const thickness = device.thickness * scale;
-  const tallest = (height - 70) / 1.25;
   const magnified = thickness < THINNEST ? Math.min(roundUp(THINNEST / thickness), tallest / thickness) : 1;
-  drawSide(paint, left + room_ / 2, height / 2 - 6, device.side * scale, thickness * magnified, charge, positive);
+  drawSide(paint, left + room / 2, height / 2 - 6, device.side * scale, thickness * magnified, charge, positive);
   pen.fillStyle = colour("faint");
   pen.textAlign = "center";
   pen.fillText("from above", above / 2 + 4, height - 4);
   const remark = magnified > 1.0001 ? `from the side, thickness ×${Number(magnified.toPrecision(3))}` : "from the side, to scale";
-  pen.fillText(remark, left + room_ / 2, height - 4);
-  drawScale(paint, left + room_, 14, device.side, scale);
+  pen.fillText(remark, left + room / 2, height - 4);
+  drawScale(paint, left + room, 14, device.side, scale);
 }
 
 function drawAbove({ pen, colour, stretch, snapped }, x, y, side) {

@@ -1,5 +1,5 @@
 // The motion of a device: the actuator stepped at the pace of the page, its past, and whether it has snapped.
-import { load, parameters, scales } from "./device.js";
+import { load } from "./device.js";
 
 export const TOLERANCE = 1e-10;
 
@@ -15,16 +15,17 @@ export class Motion {
 
   /** Begins anew at rest, undeformed. */
   restart(device) {
-    this.actuator.start({ ...parameters(device), ...load(device), record_extremes: 1 }, TOLERANCE);
+    const { scales, period, parameters } = this.actuator.fold(device);
+    this.actuator.start({ ...parameters, ...load(device), record_extremes: 1 }, TOLERANCE);
     this.device = device;
-    this.scales = scales(device);
-    this.period = 2 * Math.PI * Math.sqrt((parameters(device).c + 2) / 6);
+    this.scales = scales;
+    this.period = period;
     this.past = [];
     this.keep();
     this.settle();
   }
 
-  /** Goes on under another load. */
+  /** Goes on under another load: one of its four numbers is another. */
   reload(device) {
     this.actuator.set(load(device));
     this.device = device;
@@ -35,7 +36,9 @@ export class Motion {
   settle() {
     const { get } = this.actuator;
     this.snapped = null;
-    this.threshold = { dynamic: get("phi_pull_in"), static: get("phi_pull_in_static") };
+    // Not phi_pull_in: the margin counts the voltage too above which nothing bounds the stretch.
+    this.threshold = { dynamic: get("pull_in_margin") + Math.abs(get("phi_total")), static: get("phi_pull_in_static") };
+    this.frequency = this.actuator.frequency() / (2 * Math.PI * this.scales.time);
     const stretch = (thickness) => (thickness > 0 ? 1 / Math.sqrt(thickness) : Infinity);
     this.fold = { dynamic: stretch(get("lambda3_pull_in")), static: stretch(get("lambda3_pull_in_static")) };
     this.judge();
@@ -76,7 +79,9 @@ export class Motion {
     if (!Number.isFinite(from)) return Infinity;
     // Beyond the fold of the equilibria the curve falls everywhere near it; before it the top lies further out.
     let best = this.fold.static;
-    if (Math.abs(get("phi_total")) >= this.threshold.static) return best;
+    // Where no voltage pulls it in from rest, the motion passes the place of the fold without a snap.
+    const gone = Number.isFinite(this.threshold.dynamic) ? best : Infinity;
+    if (Math.abs(get("phi_total")) >= this.threshold.static) return gone;
     let before = potential(best);
     for (let stretch = best * 1.01; stretch < 8; stretch *= 1.01) {
       const now = potential(stretch);

@@ -1,5 +1,6 @@
 // The scenes and materials of the Python package in SI units, as devices of the page.
 import presets from "presets";
+import { actuator } from "./core.js";
 import { QUANTITIES } from "./device.js";
 
 /** What no preset says: nothing pulls, and the alternating voltage waits at a frequency that shows something. */
@@ -10,7 +11,11 @@ const LEFT_OUT = [
   [/^(J_m|kappa[23])$/, "stiffening"],
   [/^k[123]$/, "a permittivity that changes with the stretch"],
   [/^(mu|tau|J)_[123]$|^(eta|b)$/, "viscosity"],
-  [/_breakdown$/, "breakdown"],
+  [/_breakdown(_number)?$/, "breakdown"],
+  [/^(R_s|G_p|sigma|E_conduction)$/, "resistances and leaks"],
+  [/^(m|k|l)_load$/, "masses and springs on the edges"],
+  [/^n_(layers|surfaces)$/, "layers"],
+  [/^lambda_(min|max)$/, `another end of the motion than at λ = ${actuator.get("lambda_min")} and ${actuator.get("lambda_max")}`],
 ];
 
 /** Start values of the SI FMU as a device; what they do not say is as in the paper's silicone, which the FMU starts with. */
@@ -22,12 +27,13 @@ function deviceOf(values) {
 }
 
 function noteOf({ description, source, not_verified: unsure, start_values: values }) {
-  const asked = Object.keys(values).filter((name) => values[name] !== 0);
-  const missing = LEFT_OUT.filter(([pattern]) => asked.some((name) => pattern.test(name))).map(([, words]) => words);
+  const asked = Object.keys(values).filter((name) => values[name] !== 0 && !QUANTITIES.some(({ variable }) => variable === name));
+  // What has no words is said by its name.
+  const missing = new Set(asked.map((name) => LEFT_OUT.find(([pattern]) => pattern.test(name))?.[1] ?? name));
   return [
     description,
     source && `Source: ${source} Not verified: ${unsure}`,
-    missing.length > 0 && `This page leaves out ${missing.join(", ").replace(/, ([^,]*)$/, " and $1")}.`,
+    missing.size > 0 && `This page leaves out ${[...missing].join(", ").replace(/, ([^,]*)$/, " and $1")}.`,
   ].filter(Boolean).join(" ");
 }
 

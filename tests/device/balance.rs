@@ -1,5 +1,7 @@
 //! The balance of energy of random actuators under random inputs, with jumps.
 
+use std::cell::Cell;
+
 use crate::clocked::Clocked;
 use crate::scene::{Present, start};
 use dielectric_elastomer_actuator::actuator::device::{
@@ -12,6 +14,7 @@ use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;
 use dielectric_elastomer_actuator::solver::coupled::{
     CoupledEquation, MOST_STATES, Progress, Stage,
 };
+use dielectric_elastomer_actuator::solver::trajectory::Failure;
 use proptest::prelude::*;
 
 pub fn off_or(range: std::ops::Range<f64>) -> impl Strategy<Value = f64> {
@@ -80,6 +83,24 @@ prop_compose! {
     }
 }
 
+/// A thousand cases.
+pub fn thousand() -> ProptestConfig {
+    ProptestConfig {
+        cases: 1000,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    }
+}
+
+/// Whether a motion has ended as one that is pulled in may: at a limit, or far out, where a leakage that grows
+/// exponentially with the field can need steps that are too short.
+pub fn is_pulled_in(progress: Result<Progress, Failure>, position: f64) -> bool {
+    progress != Ok(Progress::Whole) && !(0.35..=3.0).contains(&position)
+}
+
+/// More than so many of the thousand must be followed to their end. Of 60 000, four were not.
+pub const MOST_OF_THEM: u32 = 990;
+
 /// The time scale of a random device, and the unit of its source: a current fills the capacitance of 1 in about a period.
 pub fn scales(device: &Device) -> (f64, f64) {
     let period = ((device.sheet.aspect + 2.0) / 6.0).sqrt();
@@ -127,23 +148,23 @@ fn set(motion: &mut DeviceMotion, trajectory: &mut Clocked<Carried>, drive: Driv
     trajectory.jump(&[0.0; MOST_STATES], &exchanged.all());
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig {
-        cases: 1000,
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    })]
-
-    /// What is stored has grown by what was supplied less what was lost, to 1e-10 of what was
-    /// stored, lost or supplied at most, whatever the parameters and inputs.
-    #[test]
-    fn energy_is_balanced(
-        device in device(),
-        inputs in prop::collection::vec(
-            (-0.4..0.4, -0.1..0.1, -0.2..0.2, 0.01..2.0, off_or(0.05..0.3), 0.1..3.0),
-            1..6,
+/// What is stored has grown by what was supplied less what was lost, to 1e-10 of what was stored, lost or supplied at
+/// most, whatever the parameters and inputs.
+#[test]
+fn energy_is_balanced() {
+    let inputs = prop::collection::vec(
+        (
+            -0.4..0.4,
+            -0.1..0.1,
+            -0.2..0.2,
+            0.01..2.0,
+            off_or(0.05..0.3),
+            0.1..3.0,
         ),
-    ) {
+        1..6,
+    );
+    let followed = Cell::new(0);
+    proptest!(thousand(), |(device in device(), inputs in inputs)| {
         let units = scales(&device);
         let (period, _) = units;
         let mut motion = DeviceMotion {
@@ -159,11 +180,10 @@ proptest! {
             set(&mut motion, &mut trajectory, drive);
             for _ in 0..4 {
                 let progress = trajectory.advance(&motion, periods * period);
-                // Some are pulled in, far out.
-                if progress != Ok(Progress::Whole) {
-                    prop_assume!(trajectory.position() > 3.0 || trajectory.position() < 0.35);
+                if is_pulled_in(progress, trajectory.position()) {
                     return Ok(());
                 }
+                prop_assert_eq!(progress, Ok(Progress::Whole));
                 let present = Present::of(&motion, &trajectory);
                 let stored = present.stored.total();
                 largest = present
@@ -178,5 +198,7 @@ proptest! {
                 );
             }
         }
-    }
+        followed.set(followed.get() + 1);
+    });
+    assert!(followed.get() > MOST_OF_THEM, "{}", followed.get());
 }

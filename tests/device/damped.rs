@@ -1,6 +1,7 @@
 //! A damped actuator is followed by the integrator of the paper's equation.
 
 use crate::clocked::Clocked;
+use crate::largest::largest;
 use crate::scene::{LIMITS, Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::{Damping, Device, DeviceMotion};
@@ -75,7 +76,7 @@ fn both_integrators_follow_the_same_damped_motion() {
                 follow(&mut reference, &motion, time, 0.1 * scale);
                 let position = plain.position() - reference.position();
                 let rate = (plain.rate() - reference.rate()) * scale;
-                let error = position.abs().max(rate.abs());
+                let error = largest([position, rate]);
                 assert!(error < 1e-11, "{motion:?}, step {step}, {k}: {error:e}");
             }
         }

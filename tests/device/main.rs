@@ -5,6 +5,8 @@ mod balance;
 mod clocked;
 mod damped;
 mod endpoint_only;
+#[path = "../largest/mod.rs"]
+mod largest;
 mod periods;
 mod plain;
 mod published;

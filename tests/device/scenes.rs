@@ -44,7 +44,7 @@ fn errors(name: &str, tolerance: f64, step: f64, records_energy: bool) -> Errors
     let mut worst = Errors::default();
     let mut see = |place: fn(&mut Errors) -> &mut f64, error: f64| {
         let place = place(&mut worst);
-        *place = if error <= *place { *place } else { error };
+        *place = crate::largest::largest([*place, error]);
     };
     for row in rows {
         let time = scales.time(DoubleDouble::new(number(&row["t_s"])));
@@ -138,13 +138,7 @@ impl Errors {
         let motion = [stretch, rate, dashpots];
         let port = [charge, current, field];
         let all = motion.into_iter().chain(port).chain([energy, balance]);
-        // NaN is the largest.
-        all.fold(
-            0.0,
-            |largest, error| {
-                if error <= largest { largest } else { error }
-            },
-        )
+        crate::largest::largest(all)
     }
 }
 

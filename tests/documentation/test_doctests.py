@@ -1,5 +1,6 @@
 """The code in the doc comments of the Rust sources runs. cargo-nextest leaves it out; here it has a time limit."""
 
+import re
 import subprocess
 from pathlib import Path
 
@@ -16,4 +17,5 @@ def test_the_code_in_doc_comments_runs():
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "test result: ok." in done.stdout
+    passed = re.findall(r"^test result: ok\. (\d+) passed", done.stdout, flags=re.MULTILINE)
+    assert sum(map(int, passed)) > 0, done.stdout

@@ -28,8 +28,8 @@ def test_period_and_turning_stretch_of_the_motion(actuator, orbit):
         tolerance=allowed.TOLERANCE,
     )
     period, stretch = turning_points.period_and_overshoot(response)
-    assert period == pytest.approx(orbit.period, rel=allowed.ORBIT_RELATIVE, abs=0)
-    assert stretch**-2 == pytest.approx(orbit.turning_lambda3, rel=allowed.ORBIT_RELATIVE, abs=0)
+    assert period == pytest.approx(orbit.period, rel=allowed.PERIOD_RELATIVE, abs=0)
+    assert stretch**-2 == pytest.approx(orbit.turning_lambda3, rel=allowed.TURN_RELATIVE, abs=0)
 
 
 @pytest.mark.parametrize("steps", [1, 37])
@@ -39,7 +39,7 @@ def test_stepping_to_the_exact_turning_point_and_back(actuator, orbit, steps):
     for _ in range(steps):
         actuator.advance(orbit.period / 2 / steps)
     lambda3, rate = actuator.get("lambda3", "lambda_dot")
-    assert lambda3 == pytest.approx(orbit.turning_lambda3, rel=allowed.ORBIT_RELATIVE, abs=0)
+    assert lambda3 == pytest.approx(orbit.turning_lambda3, rel=allowed.TURN_RELATIVE, abs=0)
     assert abs(rate) <= allowed.TURNING_RATE
 
     for _ in range(steps):

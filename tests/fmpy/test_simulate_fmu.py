@@ -57,10 +57,13 @@ def test_tunable_parameter_as_an_input_column(fmu_path):
         [(0.0, 0.6, 0.0), (10.0, 0.6, 0.0), (10.0, 0.6, 0.1), (20.0, 0.6, 0.1)],
         dtype=[("time", float), ("phi", float), ("gamma_s", float)],
     )
-    result = simulate_fmu(
-        str(fmu_path), input=signals, stop_time=20.0, output_interval=1.0, output=["lambda", "gamma_s", "lambda_ddot"]
-    )
+    names = ["lambda", "lambda_dot", "lambda_ddot", "gamma_s"]
+    result = simulate_fmu(str(fmu_path), input=signals, stop_time=20.0, output_interval=1.0, output=names)
     assert result["gamma_s"][[5, -1]].tolist() == [0.0, 0.1]
+    # Eq. 16, whose terms are of order 1
+    x, v, a, gamma = (result[name] for name in names)
+    residual = (100 + 2 * x**-6) * a - 6 * x**-7 * v**2 + x - x**-5 - 0.6**2 * x**3 + 2 * gamma * x
+    assert np.abs(residual).max() <= 1e-14
 
 
 def test_output_interval_that_does_not_divide_the_stop_time(fmu_path, actuator):

@@ -11,7 +11,7 @@ import trajectories
 @pytest.mark.parametrize("name", references.TRAJECTORY_SCENES)
 def test_trajectory(actuator, name, communication_step):
     worst = trajectories.follow(actuator, name, communication_step, allowed.TOLERANCE)
-    assert worst.error <= allowed.TRAJECTORY, worst
+    assert worst.error <= allowed.TRAJECTORY[name], worst
     assert actuator.time == pytest.approx(references.trajectory(name)["t"][-1], rel=1e-12)
 
 
@@ -26,4 +26,4 @@ def test_one_step_over_the_whole_span(actuator):
         last = references.trajectory(name)[-1]
         actuator.start(references.TRAJECTORY_SCENES[name], tolerance=allowed.TOLERANCE)
         actuator.advance(last["t"])
-        assert abs(actuator.get("lambda") - last["lam"]) <= allowed.TRAJECTORY
+        assert abs(actuator.get("lambda") - last["lam"]) <= allowed.TRAJECTORY[name]

@@ -16,6 +16,16 @@ ARGUMENTS = (
 )  # fmt: skip
 PATIENCE = 120_000
 """Milliseconds that anything on the page may take, on a machine with a load of 20 too."""
+SILICONE = {
+    "voltage": 650.0, "prestress": 0.0, "driveVoltage": 0.0, "driveFrequency": 100.0, "thickness": 10.0, "side": 0.1,
+    "surfaceEnergy": 20.0, "surfaceTension": 20.0, "surfaceElasticity": 126.0, "modulus": 303.0, "density": 1100.0,
+    "relativePermittivity": 2.8,
+}  # fmt: skip
+"""The paper's material in the units of the page."""
+
+
+def fragment(**changes) -> str:
+    return "&".join(f"{key}={value}" for key, value in {**SILICONE, **changes}.items())
 
 
 @pytest.fixture(scope="session")
@@ -55,6 +65,17 @@ class Visit:
     def advance(self, count: int) -> None:
         """Press the button for a single step so many times."""
         self.page.locator("#advance").evaluate("(button, count) => { while (count--) button.click(); }", count)
+
+    def type(self, key: str, text: str) -> None:
+        """Type into the box of a quantity and leave it."""
+        self.page.fill(f"#{key}", text)
+        self.page.press(f"#{key}", "Tab")
+
+    def slide(self, key: str, place: int) -> None:
+        """Move the slider of a quantity to one of its places, 0 to 1000."""
+        self.page.locator(f"#{key}-slider").evaluate(
+            "(slider, place) => { slider.value = place; slider.dispatchEvent(new Event('input')); }", place
+        )
 
     def reading(self, name: str) -> float:
         """A reading in SI units, all digits of it."""

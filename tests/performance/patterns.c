@@ -2,7 +2,8 @@
  *
  *   patterns LIBRARY GUID PATTERN COUNT NAME=REFERENCE...
  *
- * Runs PATTERN COUNT times inside `measured`; what comes before is not counted. */
+ * Runs PATTERN COUNT times inside `measured`; what comes before and after is not counted. Prints the stretch at the
+ * end. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -148,6 +149,10 @@ int main(int argc, char **argv)
     /* The first time round takes what later ones find ready. */
     run(pattern, 10);
     measured(pattern, atoi(argv[4]));
+    fmi2ValueReference lambda = reference("lambda");
+    double stretch;
+    OK(call_fmi2GetReal(component, &lambda, 1, &stretch));
+    printf("%.17g\n", stretch);
     call_fmi2FreeInstance(component);
     return 0;
 }

@@ -4,6 +4,7 @@ use dielectric_elastomer_actuator::actuator::motion::{Load, energy};
 use dielectric_elastomer_actuator::solver::trajectory::Failure;
 use proptest::prelude::*;
 
+use super::largest::largest;
 use super::*;
 
 /// Rows t, λ, dλ/dt of a reference with 30 digits.
@@ -30,9 +31,8 @@ fn worst_error(name: &str, motion: &Motion, tolerance: f64, step: f64) -> f64 {
     for pair in rows.windows(2) {
         let [[before, ..], [time, stretch, rate]] = [pair[0], pair[1]];
         follow(&mut trajectory, motion, time - before, step);
-        worst = worst
-            .max((trajectory.position() - stretch).abs())
-            .max((trajectory.rate() - rate).abs());
+        let errors = [trajectory.position() - stretch, trajectory.rate() - rate];
+        worst = largest([worst, largest(errors)]);
     }
     worst
 }

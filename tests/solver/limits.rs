@@ -47,7 +47,7 @@ fn a_start_next_to_a_limit_meets_it_only_on_the_way_out() {
     at_once(stop(bottom, 0.0, -100.0), Limit::Lower);
 }
 
-/// Inward first, and back within a part of a step: rate −1e-9 against an outward force.
+/// Inward first, and back within a part of a step: rate −1e-6 against an outward force.
 #[test]
 fn a_limit_is_met_after_a_turn_next_to_it() {
     let acceleration = (10.0 - 1.5 + 1.5_f64.powi(-5) - 0.2 * 1.5 * 1.25 * 5.75)

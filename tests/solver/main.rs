@@ -5,6 +5,8 @@ mod accuracy;
 #[path = "../clocked/mod.rs"]
 mod clocked;
 mod extremes;
+#[path = "../largest/mod.rs"]
+mod largest;
 mod limits;
 mod rest;
 mod stored;

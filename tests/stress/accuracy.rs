@@ -122,12 +122,8 @@ impl Amplification {
     }
 
     fn largest(&self) -> f64 {
-        let norm = |m: &Matrix| {
-            m.iter()
-                .map(|row| row[0].abs() + row[1].abs())
-                .fold(0.0, f64::max)
-        };
-        self.from.iter().map(norm).fold(0.0, f64::max)
+        let norm = |m: &Matrix| largest(m.map(|row| row[0].abs() + row[1].abs()));
+        largest(self.from.iter().map(norm))
     }
 }
 
@@ -156,6 +152,8 @@ impl std::fmt::Display for Miss {
 pub struct Played {
     /// Where the error is worst.
     pub worst: Miss,
+    /// How many steps were compared.
+    pub compared: usize,
     /// Stretch and rate at the end.
     pub end: [f64; 2],
 }
@@ -175,6 +173,7 @@ pub fn play(scene: &Scene) -> Played {
     };
     let mut worst = Miss::default();
     let mut passed = 0.0;
+    let mut compared = 0;
     for (index, step) in scene.steps.iter().enumerate() {
         if let Some(change) = step.change {
             exact.set_inputs(&load, &change);
@@ -200,14 +199,16 @@ pub fn play(scene: &Scene) -> Played {
             [c * unit * before, d],
         ]);
         let [stretch, rate] = host.state();
-        let error = ((stretch - exact_stretch) / exact_stretch)
-            .abs()
-            .max((rate - exact_rate).abs() * unit);
-        assert!(!error.is_nan());
+        let error = largest([
+            (stretch - exact_stretch) / exact_stretch,
+            (rate - exact_rate) * unit,
+        ]);
         let amplification = amplification.largest();
+        assert!(!(error / amplification).is_nan());
         if amplification > MOST_AMPLIFIED {
             break;
         }
+        compared += 1;
         let rounding = allowed::ROUNDING + allowed::ROUNDING_WITH_TIME * passed;
         let ratio = (error / amplification - rounding).max(0.0) / tolerance;
         if ratio >= worst.ratio {
@@ -221,18 +222,28 @@ pub fn play(scene: &Scene) -> Played {
     }
     Played {
         worst,
+        compared,
         end: host.state(),
     }
 }
 
 /// What scenes of a kind miss at worst, sorted.
 fn survey(kind: Kind, count: u64) -> Vec<(Miss, u64)> {
+    let (mut compared, mut steps) = (0, 0);
     let mut misses: Vec<_> = (0..count)
         .map(|seed| {
             let scene = Scene::random(kind, &mut Random(seed << 8 | kind as u64));
-            (play(&scene).worst, seed)
+            let played = play(&scene);
+            compared += played.compared;
+            steps += scene.steps.len();
+            (played.worst, seed)
         })
         .collect();
+    // Some motions are pulled in.
+    assert!(
+        10 * compared > 8 * steps,
+        "{kind:?}: {compared} of {steps} steps compared"
+    );
     misses.sort_by(|a, b| a.0.ratio.total_cmp(&b.0.ratio));
     misses
 }
@@ -261,7 +272,7 @@ fn random_scenes_of_every_kind_keep_the_tolerance() {
     for (kind, misses) in KINDS.iter().zip(&surveys) {
         let (miss, seed) = misses.last().expect("some scenes");
         assert!(
-            miss.ratio <= allowed::TOLERANCES,
+            miss.ratio <= allowed::tolerances(*kind),
             "{kind:?}, seed {seed}: {miss}"
         );
     }
@@ -273,8 +284,14 @@ fn random_scenes_of_every_kind_keep_the_tolerance() {
 fn a_way_that_rounding_has_left_does_not_end_the_motion() {
     for seed in [103, 434, 530, 563, 593, 693, 797, 811, 1028] {
         let scene = Scene::random(Kind::Mixed, &mut Random(seed << 8 | Kind::Mixed as u64));
-        let miss = play(&scene).worst;
-        assert!(miss.ratio <= allowed::TOLERANCES, "seed {seed}: {miss}");
+        let Played {
+            worst, compared, ..
+        } = play(&scene);
+        assert_eq!(compared, scene.steps.len(), "seed {seed}");
+        assert!(
+            worst.ratio <= allowed::tolerances(Kind::Mixed),
+            "seed {seed}: {worst}"
+        );
     }
 }
 
@@ -306,7 +323,7 @@ fn the_independent_integrator_gives_the_references() {
                 .collect();
             motion.advance(&actuator, &load, row[0] - motion.time.value());
             let [stretch, rate] = motion.state();
-            let error = (stretch - row[1]).abs().max((rate - row[2]).abs());
+            let error = largest([stretch - row[1], rate - row[2]]);
             assert!(error <= most, "{name} at {}: {error:e}", row[0]);
         }
     }

@@ -23,10 +23,11 @@ fn references() -> Vec<[f64; 3]> {
     rows.iter().map(row).collect()
 }
 
-/// Time from a far stretch to infinity: λ'' = φ²λ³/c there, so that
-/// λ = √(2c)/(φ (t* − t)); the next term of the series is of order λ⁻³.
+/// Time from a far stretch to infinity: 2c λ'² = φ²λ⁴ − 2λ² + … there by the energy; the next
+/// term of the series is of order λ⁻⁵.
 fn rest(voltage: f64, aspect: f64, stretch: f64) -> f64 {
-    (2.0 * aspect).sqrt() / (voltage * stretch)
+    let next = 1.0 / (3.0 * (voltage * stretch).powi(2));
+    (2.0 * aspect).sqrt() / (voltage * stretch) * (1.0 + next)
 }
 
 /// In one step and in steps of 0.1, up to stretches of 1e6.

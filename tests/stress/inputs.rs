@@ -23,11 +23,7 @@ fn jumps(seed: u64, count: u32, tolerance: f64, choose: impl Fn(&mut Random) -> 
         advance(&mut trajectory, &motion(&actuator, &load), step);
         let State { position, rate } = trajectory.state();
         let [stretch, stretch_rate] = reference.state();
-        let error = (position - stretch)
-            .abs()
-            .max((rate - stretch_rate).abs() * unit);
-        assert!(!error.is_nan());
-        worst = worst.max(error);
+        worst = largest([worst, position - stretch, (rate - stretch_rate) * unit]);
     }
     worst
 }
@@ -88,7 +84,7 @@ fn many_short_steps_under_changing_inputs_keep_the_tolerance() {
                 trajectory.restart();
                 advance(&mut trajectory, &motion(&actuator, &load), step);
                 reference.advance(&actuator, &load, step);
-                worst = worst.max((trajectory.position() - reference.state()[0]).abs());
+                worst = largest([worst, trajectory.position() - reference.state()[0]]);
             }
             let what = format!("c = {aspect}, steps of {step}, tolerance {tolerance:e}");
             assert_at_most(worst, 10.0 * tolerance, &what);
@@ -167,7 +163,7 @@ fn energy_given_by_a_sequence_of_inputs_stays_over_a_million_units_of_time() {
         let mut worst = 0.0_f64;
         for _ in 0..1000 {
             advance(&mut trajectory, &motion, 1000.37);
-            worst = worst.max((now(&trajectory) - first).abs());
+            worst = largest([worst, now(&trajectory) - first]);
         }
         let what = format!("energy, tolerance {tolerance:e}, orbits {orbits}");
         assert_at_most(worst, drift, &what);

@@ -58,11 +58,9 @@ fn all_levels_give_the_same_motion() {
                 if fused == other_fused {
                     assert_eq!(run, other_run, "{what}");
                 }
-                let error = |(a, b): (&State, &State)| {
-                    let rate = (a.rate - b.rate).abs() * unit;
-                    (a.position - b.position).abs().max(rate)
-                };
-                let worst = run.iter().zip(other_run).map(error).fold(0.0, f64::max);
+                let errors =
+                    |(a, b): (&State, &State)| [a.position - b.position, (a.rate - b.rate) * unit];
+                let worst = largest(run.iter().zip(other_run).flat_map(errors));
                 assert_at_most(worst, allowed::LEVELS, &what);
             }
         }

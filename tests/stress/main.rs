@@ -15,6 +15,8 @@ mod fold;
 mod independent;
 mod inputs;
 mod instance;
+#[path = "../largest/mod.rs"]
+mod largest;
 mod levels;
 #[path = "../processor_time/mod.rs"]
 mod processor_time;
@@ -31,6 +33,7 @@ use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Steps, Trajectory};
 use independent::{Actuator, Load, Taylor};
+use largest::largest;
 
 const REST: State = State {
     position: 1.0,
@@ -85,7 +88,7 @@ fn advance(trajectory: &mut Clocked<Steps>, motion: &Motion, step: f64) {
 
 /// The worse of the differences of position and rate.
 fn difference(a: State, [stretch, rate]: [f64; 2]) -> f64 {
-    let difference = (a.position - stretch).abs().max((a.rate - rate).abs());
+    let difference = largest([a.position - stretch, a.rate - rate]);
     assert!(!difference.is_nan());
     difference
 }

@@ -27,10 +27,7 @@ fn worst(
         reference.advance(actuator, load, step);
         let State { position, rate } = trajectory.state();
         let [stretch, stretch_rate] = reference.state();
-        assert!(!(position + rate).is_nan());
-        worst = worst
-            .max((position - stretch).abs())
-            .max((rate - stretch_rate).abs() * unit);
+        worst = largest([worst, position - stretch, (rate - stretch_rate) * unit]);
     }
     worst
 }

@@ -146,7 +146,7 @@ fn returns(orbits: bool, [forth, back]: [&Motion; 2], time: f64, what: &str) {
     };
     let State { position, rate } = follow(follow(REST, forth), back);
     let unit = (forth.coefficients.inertia + 2.0).sqrt();
-    let error = (position - 1.0).abs().max(rate.abs() * unit);
+    let error = largest([position - 1.0, rate * unit]);
     assert_at_most(error, allowed::REVERSAL, what);
 }
 

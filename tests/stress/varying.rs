@@ -49,6 +49,7 @@ fn holds(mut scene: Scene, exact: [Option<f64>; 2]) {
     for tolerance in [None, Some(1e-12), Some(1e-6), Some(1e-14), Some(1e-2)] {
         scene.tolerance = tolerance;
         let played = play(&scene);
+        assert_eq!(played.compared, scene.steps.len(), "{tolerance:?}");
         let most = allowed::TOLERANCES * tolerance.unwrap_or(1e-10) + 4.0 * f64::EPSILON;
         for (place, unit) in [1.0, unit].into_iter().enumerate() {
             if let Some(exact) = exact[place] {

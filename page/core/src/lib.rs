@@ -6,9 +6,13 @@
 #![expect(unsafe_code, reason = "exported names: no function here is unsafe")]
 
 use std::cell::RefCell;
+use std::f64::consts::TAU;
+use std::mem;
 
-use dielectric_elastomer_actuator::actuator::Coefficients;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration, energy};
+use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
+use dielectric_elastomer_actuator::actuator::{Coefficients, Parameters};
+use dielectric_elastomer_actuator::arithmetic::jet::Dual;
 use dielectric_elastomer_actuator::instance::{Fault, Instance, Message, Type};
 use dielectric_elastomer_actuator::model::variables::{Kind, value_reference};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
@@ -17,8 +21,16 @@ use dielectric_elastomer_actuator::solver::State;
 /// Next to λ = 1 the stagnation curve is taken at this distance from it, where 0/0 is far enough.
 const NEAR_REST: f64 = 1e-5;
 
+/// The factor between the stretches at which an equilibrium is looked for, and how often the last two are halved.
+const STRIDE: f64 = 1.01;
+const HALVINGS: usize = 60;
+
 struct Page {
     actuator: Instance<Nondimensional>,
+    /// The actuator before the last reset, until the next motion has begun.
+    before: Option<Instance<Nondimensional>>,
+    /// What the last device was folded to.
+    folded: [f64; 8],
     /// What the last call that had something to say said.
     text: String,
 }
@@ -26,6 +38,8 @@ struct Page {
 thread_local! {
     static PAGE: RefCell<Page> = RefCell::new(Page {
         actuator: Instance::new(),
+        before: None,
+        folded: [f64::NAN; 8],
         text: String::new(),
     });
 }
@@ -98,6 +112,62 @@ fn reference_of(name: &str) -> u32 {
     value_reference::<Nondimensional>(name).unwrap_or(u32::MAX)
 }
 
+/// Smallest and largest value of a variable of the table; NaN where it has none.
+fn limits_of(reference: u32) -> [f64; 2] {
+    let variable = VARIABLES.get(reference as usize);
+    match variable.map(|variable| variable.kind) {
+        Some(Kind::Real { min, max, .. }) => [min, max],
+        _ => [f64::NAN; 2],
+    }
+}
+
+const UNLOADED: Load<f64> = Load {
+    voltage_squared: 0.0,
+    prestress: 0.0,
+};
+
+/// The angular frequency of small oscillations about an equilibrium; NaN where it is unstable.
+fn small_frequency(coefficients: &Coefficients, load: Load<f64>, equilibrium: f64) -> f64 {
+    let stretch = Dual::new(equilibrium, 1.0);
+    let load = Load {
+        voltage_squared: Dual::constant(load.voltage_squared),
+        prestress: Dual::constant(load.prestress),
+    };
+    let still = Dual::constant(0.0);
+    let response = acceleration(&coefficients.same(stretch), load, stretch, still);
+    (-response.slope()).sqrt()
+}
+
+/// The first equilibrium on the way on which the load leads from λ = 1.
+fn equilibrium(
+    coefficients: &Coefficients,
+    load: Load<f64>,
+    [lowest, highest]: [f64; 2],
+) -> Option<f64> {
+    let force = |stretch| acceleration(coefficients, load, stretch, 0.0);
+    let (way, stride) = if force(1.0) < 0.0 {
+        (-1.0, 1.0 / STRIDE)
+    } else {
+        (1.0, STRIDE)
+    };
+    let (mut before, mut behind) = (1.0, stride);
+    while way * force(behind) > 0.0 {
+        (before, behind) = (behind, behind * stride);
+        if !(lowest..highest).contains(&behind) {
+            return None;
+        }
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (before + behind);
+        if way * force(middle) > 0.0 {
+            before = middle;
+        } else {
+            behind = middle;
+        }
+    }
+    Some(behind)
+}
+
 fn at_rest(position: f64) -> State {
     State {
         position,
@@ -124,10 +194,80 @@ pub extern "C" fn actuator_message_length() -> usize {
     with(|page| page.text.len())
 }
 
+/// Smallest value of the variable of a value reference.
+#[unsafe(no_mangle)]
+pub extern "C" fn actuator_least(reference: u32) -> f64 {
+    limits_of(reference)[0]
+}
+
+/// Largest value of the variable of a value reference.
+#[unsafe(no_mangle)]
+pub extern "C" fn actuator_most(reference: u32) -> f64 {
+    limits_of(reference)[1]
+}
+
+/// Folds a device in SI units. Address of eight numbers: the units of time, voltage and stress in SI units, the
+/// period of small oscillations about λ = 1 without load and surface effects, c, `gamma_s`, `tau_s`, `E_s`.
+#[unsafe(no_mangle)]
+pub extern "C" fn actuator_fold(
+    shear_modulus: f64,
+    density: f64,
+    relative_permittivity: f64,
+    thickness: f64,
+    side: f64,
+    surface_energy: f64,
+    surface_tension: f64,
+    surface_elasticity: f64,
+) -> *const f64 {
+    let sizes = [thickness, side];
+    let device = SiDevice {
+        surface_energy,
+        surface_tension,
+        surface_elasticity,
+        ..SiDevice::sheet(shear_modulus, density, relative_permittivity, sizes)
+    };
+    let scales = Scales::of(&device);
+    let Parameters {
+        aspect,
+        surface_energy,
+        surface_tension,
+        surface_elasticity,
+    } = device.nondimensional().sheet;
+    let bare = Coefficients::fold(&Parameters {
+        aspect,
+        surface_energy: 0.0,
+        surface_tension: 0.0,
+        surface_elasticity: 0.0,
+    });
+    with(|page| {
+        page.folded = [
+            scales.time,
+            scales.voltage,
+            shear_modulus,
+            TAU / small_frequency(&bare, UNLOADED, 1.0),
+            aspect,
+            surface_energy,
+            surface_tension,
+            surface_elasticity,
+        ];
+        page.folded.as_ptr()
+    })
+}
+
 /// An actuator before its initialization, at the start values.
 #[unsafe(no_mangle)]
 pub extern "C" fn actuator_reset() {
-    with(|page| page.actuator.reset());
+    with(|page| page.before = Some(mem::take(&mut page.actuator)));
+}
+
+/// Takes the last reset back, where no motion has begun since.
+#[unsafe(no_mangle)]
+pub extern "C" fn actuator_restore() {
+    with(|page| {
+        if let Some(before) = page.before.take() {
+            page.actuator = before;
+        }
+    });
 }
 
 /// Ends the initialization; the motion begins at time 0, followed with this relative tolerance.
@@ -140,7 +280,11 @@ pub extern "C" fn actuator_begin(tolerance: f64) -> bool {
             actuator.enter_initialization();
             actuator.exit_initialization().map(|()| message)
         });
-        page.settle(outcome)
+        let has_begun = page.settle(outcome);
+        if has_begun {
+            page.before = None;
+        }
+        has_begun
     })
 }
 
@@ -219,6 +363,24 @@ pub extern "C" fn actuator_potential(stretch: f64) -> f64 {
     })
 }
 
+/// The angular frequency of small oscillations about the equilibrium under the present prestress and voltage, the
+/// alternating one left out; NaN where there is no equilibrium.
+#[unsafe(no_mangle)]
+pub extern "C" fn actuator_frequency() -> f64 {
+    with(|page| {
+        let (coefficients, load) = page.unloaded();
+        let view = page.actuator.view();
+        let load = Load {
+            voltage_squared: view.voltage() * view.voltage(),
+            ..load
+        };
+        let limits = view.scene.limits;
+        equilibrium(&coefficients, load, [limits.lower, limits.upper]).map_or(f64::NAN, |stretch| {
+            small_frequency(&coefficients, load, stretch)
+        })
+    })
+}
+
 /// The stretch rate with which a motion of this Hamiltonian passes a stretch; NaN where it does not get there.
 #[unsafe(no_mangle)]
 pub extern "C" fn actuator_rate_of_passage(stretch: f64, hamiltonian: f64) -> f64 {
@@ -273,6 +435,70 @@ mod tests {
             );
         }
         assert!(actuator_rate_of_passage(0.8, 0.0).is_nan() && actuator_potential(1.0) == 0.0);
+    }
+
+    /// A period of a motion of small amplitude, timed between two passages, under surface effects and a load.
+    #[test]
+    fn a_small_motion_has_the_frequency() {
+        let [surface, start] = [0.3, 1e-4];
+        actuator_reset();
+        for (name, value) in [
+            ("c", 100.0),
+            ("tau_s", surface),
+            ("E_s", 1.0),
+            ("phi", 0.4),
+            // What holds λ = 1: S + φ² = 2(γ + τ).
+            ("S", 2.0 * surface - 0.16),
+            ("lambda_start", 1.0 + start),
+        ] {
+            set_named(name, value);
+        }
+        assert!(actuator_begin(1e-12));
+        let frequency = actuator_frequency();
+        // A quarter of a period after the start the motion passes the equilibrium.
+        assert!(actuator_step(0.25 * TAU / frequency));
+        let off = actuator_get(reference_of("lambda")) - 1.0;
+        assert!(off.abs() < 1e-3 * start, "{frequency}: off by {off}");
+    }
+
+    /// Without load and surface effects ω² = 6/(c + 2); beyond pull-in nothing holds the actuator.
+    #[test]
+    fn the_frequency_ends_where_the_equilibrium_does() {
+        actuator_reset();
+        set_named("c", 100.0);
+        assert!((actuator_frequency().powi(2) - 6.0 / 102.0).abs() < 1e-12);
+        set_named("phi", 0.69);
+        assert!(actuator_frequency().is_nan());
+        // The static threshold is 0.6873.
+        set_named("phi", 0.687);
+        assert!(actuator_frequency() < 0.5 * (6.0_f64 / 102.0).sqrt());
+    }
+
+    #[test]
+    fn a_start_that_is_refused_is_taken_back() {
+        actuator_reset();
+        set_named("phi", 0.6);
+        assert!(actuator_begin(1e-10) && actuator_step(3.0));
+        let stretch = actuator_get(reference_of("lambda"));
+        actuator_reset();
+        assert!(!actuator_set(reference_of("c"), 1e13));
+        actuator_restore();
+        assert_eq!(actuator_get(reference_of("lambda")), stretch);
+        assert_eq!(actuator_time(), 3.0);
+        assert!(actuator_step(1.0));
+        // What has begun is kept.
+        actuator_reset();
+        assert!(actuator_begin(1e-10));
+        actuator_restore();
+        assert_eq!(actuator_time(), 0.0);
+    }
+
+    #[test]
+    fn the_limits_are_those_of_the_table() {
+        let phi = reference_of("phi");
+        assert!(!actuator_set(phi, 1.001 * actuator_most(phi)));
+        assert!(actuator_set(phi, actuator_most(phi)) && actuator_set(phi, actuator_least(phi)));
+        assert!(actuator_most(reference_of("pulled_in")).is_nan() && actuator_least(9999).is_nan());
     }
 
     #[test]
