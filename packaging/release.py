@@ -12,12 +12,12 @@ import base64
 import functools
 import hashlib
 import json
-import os
+import re
 import shutil
-import subprocess
 import sys
 import tomllib
 import uuid
+import zipfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,13 +33,11 @@ from packageurl import PackageURL
 PROJECT = Path(__file__).resolve().parents[1]
 TARGET = PROJECT / "target"
 PAGE = "dielectric_elastomer_actuator.html"
-SHIPPED = {
-    "DielectricElastomerActuator.fmu": "nondimensional-fmu",
-    "DielectricElastomerActuatorSI.fmu": "si-fmu",
-    "dielectric_actuator_native": "dielectric-actuator-native",
-    PAGE: "page-core",
-}
-"""What is shipped, the wheel's native library too, each with the member of the workspace that it is made of."""
+NATIVE = "dielectric_actuator_native"
+"""The native library, which is in the wheel."""
+FMUS = [f"{path.stem}.fmu" for path in sorted((PROJECT / "modelDescription").glob("*.xml"))]
+LIST = "license.txt"
+"""What is linked into a part, as the packager writes it among the part's licences."""
 BILL = "bill_of_materials.cdx.json"
 SUMS = "SHA256SUMS"
 
@@ -49,35 +47,32 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--output", type=Path, default=TARGET / "releases", help="folder of releases (%(default)s)")
     output = parser.parse_args().output
-    metadata = cargo_metadata()
     version = workspace_version()
     page = TARGET / "page" / "index.html"
     wheel = TARGET / "wheel" / f"dielectric_actuator-{version}-py3-none-any.whl"
-    built = [*sorted((TARGET / "fmu").glob("*.fmu")), wheel]
-    missing = [str(path) for path in built if not path.is_file()]
-    if missing or len(built) < 2:
-        print(f"error: not built: {', '.join(missing) or 'FMU'}; run make release", file=sys.stderr)
+    fmus = [TARGET / "fmu" / name for name in FMUS]
+    missing = [str(path) for path in (*fmus, wheel) if not path.is_file()]
+    if missing:
+        print(f"error: not built: {', '.join(missing)}; run make release", file=sys.stderr)
         return 1
+    parts = {fmu.name: inside(fmu, "documentation/licenses/") for fmu in fmus}
+    parts[NATIVE] = inside(wheel, "dielectric_actuator/data/native/licenses/")
     folder = output / version
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    for path in built:
+    for path in (*fmus, wheel):
         shutil.copyfile(path, folder / path.name)
     if page.is_file():
         shutil.copyfile(page, folder / PAGE)
+        listed = page.with_name("licences.txt").read_text(encoding="utf-8")
+        parts[PAGE] = [*crates(listed), rust_standard_library(), uplot()]
     else:
         print("without the live page: there is no target/page/index.html")
-    (folder / BILL).write_text(bill_of_materials(metadata, version), encoding="utf-8")
+    (folder / BILL).write_text(bill_of_materials(version, parts), encoding="utf-8")
     (folder / SUMS).write_text(sums(folder), encoding="ascii")
     for path in sorted(folder.iterdir()):
         print(f"{path.stat().st_size:>9} bytes  {path}")
     return 0
-
-
-def cargo_metadata() -> dict:
-    """What cargo knows of the workspace and all that it depends on."""
-    words = [os.environ.get("CARGO", "cargo"), "metadata", "--format-version", "1", "--locked"]
-    return json.loads(subprocess.run(words, cwd=PROJECT, stdout=subprocess.PIPE, check=True).stdout)
 
 
 def workspace_version() -> str:
@@ -86,29 +81,28 @@ def workspace_version() -> str:
     return manifest["workspace"]["package"]["version"]
 
 
-def linked_crates(metadata: dict, member: str) -> Iterator[dict]:
-    """The crates of others that are linked into what a member of the workspace becomes, for any platform: normal
-    dependencies, no compile-time ones."""
-    packages = {package["id"]: package for package in metadata["packages"]}
-    nodes = {node["id"]: node for node in metadata["resolve"]["nodes"]}
-    ahead = [identity for identity in metadata["workspace_members"] if packages[identity]["name"] == member]
-    if not ahead:
-        raise ValueError(f"the workspace has no member {member}")
-    seen = set()
-    while ahead:
-        identity = ahead.pop()
-        compile_time = any("proc-macro" in target["kind"] for target in packages[identity]["targets"])
-        if identity in seen or compile_time:
-            continue
-        seen.add(identity)
-        for dependency in nodes[identity]["deps"]:
-            if any(kind["kind"] is None for kind in dependency["dep_kinds"]):
-                ahead.append(dependency["pkg"])
-    found = (packages[identity] for identity in seen)
-    yield from sorted((package for package in found if package["source"]), key=lambda p: (p["name"], p["version"]))
+def inside(archive: Path, folder: str) -> list[Component]:
+    """What is linked into an FMU or the native library of a wheel, as its folder of licences has it; and what draws
+    the plots of the live page, where that is in the FMU."""
+    with zipfile.ZipFile(archive) as opened:
+        names = opened.namelist()
+        if folder + LIST not in names:
+            raise ValueError(f"{archive} has no {folder}{LIST}, which lists what is linked into it; run make release")
+        found = crates(opened.read(folder + LIST).decode())
+    found += [component() for name, component in BESIDE_THE_CRATES.items() if folder + name in names]
+    return [*found, uplot()] if "documentation/actuator.html" in names else found
 
 
-def bill_of_materials(metadata: dict, version: str) -> str:
+def crates(listed: str) -> list[Component]:
+    """The crates in a list of the packager: a line for each, such as ``serde 1.0.229: MIT OR Apache-2.0``, then the
+    texts of the licences below lines of ``=``."""
+    found = re.findall(r"^(\S+) (\d\S*): (.+)$", listed.partition("=" * 80)[0], re.MULTILINE)
+    if not found:
+        raise ValueError(f"a list of what is linked in names no crate: {listed[:200]!r}; run make release")
+    return [crate(*words) for words in found]
+
+
+def bill_of_materials(version: str, contents: dict[str, list[Component]]) -> str:
     """CycloneDX 1.6 as JSON: what is shipped and what is in each part of it, with versions, licences and the checksums
     of the lock files, and what the wheel asks for."""
     own = "MIT OR Apache-2.0"
@@ -120,18 +114,10 @@ def bill_of_materials(metadata: dict, version: str) -> str:
         licenses=licensed(own),
     )
     wheel = Component(name="dielectric-actuator", version=version, bom_ref="wheel", licenses=licensed(own))
-    standard, unwinder, plotting = rust_standard_library(), llvm_unwinder(), uplot()
-    crates: dict[str, Component] = {}
-    parts: dict[str, Component] = {}
-    contents: dict[str, list[Component]] = {}
-    for name, member in SHIPPED.items():
-        parts[name] = Component(name=name, version=version, bom_ref=name, licenses=licensed(own))
-        linked = [
-            crates.setdefault(str(crate.bom_ref), crate) for crate in map(crate_of, linked_crates(metadata, member))
-        ]
-        contents[name] = [*linked, standard, plotting if name == PAGE else unwinder]
+    parts = {name: Component(name=name, version=version, bom_ref=name, licenses=licensed(own)) for name in contents}
+    linked = {str(component.bom_ref): component for part in contents.values() for component in part}
     asked = list(asked_for())
-    components = [*parts.values(), wheel, *crates.values(), standard, unwinder, plotting, *asked]
+    components = [*parts.values(), wheel, *linked.values(), *asked]
     listed = "\n".join(f"{component.bom_ref}" for component in components)
     bom = Bom(
         components=components,
@@ -162,15 +148,14 @@ def locked_checksums() -> dict[tuple[str, str], str]:
     return {(package["name"], package["version"]): package["checksum"] for package in lock if "checksum" in package}
 
 
-def crate_of(package: dict) -> Component:
+def crate(name: str, version: str, terms: str) -> Component:
     """A crate that is linked in."""
-    name, version = package["name"], package["version"]
     return Component(
         name=name,
         version=version,
         bom_ref=f"cargo:{name}@{version}",
         scope=ComponentScope.REQUIRED,
-        licenses=licensed(package["license"]) if package["license"] else None,
+        licenses=licensed(terms),
         purl=PackageURL("cargo", None, name, version),
         hashes=[HashType(alg=HashAlgorithm.SHA_256, content=locked_checksums()[name, version])],
     )
@@ -189,18 +174,26 @@ def rust_standard_library() -> Component:
     )
 
 
-def llvm_unwinder() -> Component:
-    """Of the pinned zig."""
+def of_zig(name: str, terms: str, description: str) -> Component:
+    """What the pinned zig brings."""
     lines = (PROJECT / "requirements.txt").read_text(encoding="utf-8").splitlines()
     pins = dict(line.split(";")[0].strip().split("==") for line in lines if "==" in line)
     return Component(
-        name="llvm-libunwind",
+        name=name,
         version=pins["ziglang"],
-        bom_ref="llvm-libunwind",
+        bom_ref=name,
         scope=ComponentScope.REQUIRED,
-        licenses=licensed("Apache-2.0 WITH LLVM-exception"),
-        description="the unwinder that zig of this version brings, linked in",
+        licenses=licensed(terms),
+        description=f"{description} that zig of this version brings, linked in",
     )
+
+
+BESIDE_THE_CRATES = {
+    "rust-standard-library.html": rust_standard_library,
+    "llvm-libunwind.txt": lambda: of_zig("llvm-libunwind", "Apache-2.0 WITH LLVM-exception", "the unwinder"),
+    "mingw-w64.txt": lambda: of_zig("mingw-w64", "ZPL-2.1", "the start-up code and import libraries of Windows"),
+}
+"""What else is linked in, by the licence that is there then."""
 
 
 def uplot() -> Component:

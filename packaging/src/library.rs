@@ -197,17 +197,28 @@ fn c_environment(
     // bindgen itself watches the variable of the platform it runs on: one that came and went would make
     // cargo compile it, and all that is behind it, anew for each library.
     for headed in [platform, &PLATFORMS[0]] {
-        let mut headers = OsString::from("-nostdinc");
         let place = folder.with_file_name(headed.folder);
         fs::create_dir_all(&place).with_context(|| format!("cannot make {}", place.display()))?;
-        for folder in zig.headers(headed, &place)? {
-            headers.push(" -isystem ");
-            headers.push(folder);
-        }
+        let headers = clang_arguments(&zig.headers(headed, &place)?)?;
         let triple = headed.triple.replace('-', "_");
-        variables.push((format!("BINDGEN_EXTRA_CLANG_ARGS_{triple}"), headers));
+        variables.push((format!("BINDGEN_EXTRA_CLANG_ARGS_{triple}"), headers.into()));
     }
     Ok(variables)
+}
+
+/// What leads clang to folders of headers and no others, as bindgen reads it: split like a shell does.
+fn clang_arguments(folders: &[PathBuf]) -> Result<String> {
+    let mut words = vec!["-nostdinc"];
+    for folder in folders {
+        let unreadable = || {
+            format!(
+                "the folder of headers {} is no Unicode, which bindgen needs; move the checkout and its .venv",
+                folder.display()
+            )
+        };
+        words.extend(["-isystem", folder.to_str().with_context(unreadable)?]);
+    }
+    shlex::try_join(words).context("a folder of headers has a NUL in its name")
 }
 
 /// Compiler flags, one per `\x1f`, that take the build machine's paths out of the binary: those of the
@@ -262,4 +273,26 @@ pub fn resolve(project: &Metadata, platform: &Platform) -> Result<Metadata> {
         .other_options(["--locked", "--filter-platform", platform.triple].map(String::from))
         .exec()
         .context("cannot resolve the dependencies")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_of_headers_may_have_a_space() -> Result<()> {
+        let text = clang_arguments(&["/plain/c++11".into(), "/a folder/it's".into()])?;
+        let words = shlex::split(&text).context("no shell would split it")?;
+        assert_eq!(
+            words,
+            [
+                "-nostdinc",
+                "-isystem",
+                "/plain/c++11",
+                "-isystem",
+                "/a folder/it's"
+            ]
+        );
+        Ok(())
+    }
 }

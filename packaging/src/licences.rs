@@ -223,7 +223,6 @@ mod tests {
         Ok(linked.into_keys().map(|(name, _)| name).collect())
     }
 
-    /// The packager asks for `zip`, the library for `fmi` and Windows for `windows-link`; none of them is in the page.
     #[test]
     fn what_another_package_or_platform_asks_for_is_not_linked() -> Result<()> {
         let page = names(&[&page::BROWSER], page::PACKAGE)?;

@@ -20,7 +20,8 @@ use std::fs;
 use std::path::Path;
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
+use cargo_metadata::camino::Utf8Path;
 use cargo_metadata::{Metadata, MetadataCommand};
 use clap::{Parser, Subcommand};
 use dielectric_elastomer_actuator::description;
@@ -32,7 +33,7 @@ use dielectric_elastomer_actuator::si::Si;
 use archive::Entries;
 use inspect::Binary;
 use platform::{PLATFORMS, Platform};
-use toolchain::Toolchain;
+use toolchain::{Toolchain, tool};
 use zig::Zig;
 
 /// An FMU that is shipped: a member of the workspace below `fmus`.
@@ -96,11 +97,7 @@ enum Verb {
     /// Pack the FMU into target/fmu
     Pack,
     /// Write the description of each FMU into modelDescription
-    Describe {
-        /// Write nothing, fail if the checked-in file differs
-        #[arg(long)]
-        check: bool,
-    },
+    Describe,
     /// Write the user's guide of each FMU to target/guide
     Guide,
     /// Build the library that carries the core into Python, in target/native
@@ -113,7 +110,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let outcome = match arguments.verb.unwrap_or(Verb::Pack) {
         Verb::Pack => pack(arguments.all),
-        Verb::Describe { check } => describe(check),
+        Verb::Describe => describe(),
         Verb::Guide => write_guide(),
         Verb::Native => native(arguments.all),
         Verb::Page => write_page(),
@@ -145,15 +142,16 @@ fn pack(all: bool) -> Result<()> {
     let platforms: Vec<&Platform> = built.iter().map(|(platform, _)| *platform).collect();
     let mut shared = Entries::new();
     shared.insert("model.png".into(), icon::png()?);
-    let page = page::html(&project);
-    let with_page = page.is_ok();
-    let without_page = match page {
-        Ok(page) => {
+    let without_page = match tool("NODE") {
+        Ok(_) => {
+            let page = page::html(&project)
+                .context("cannot make the live page; to pack without it, leave NODE unset")?;
             shared.insert(format!("documentation/{}", page::NAME), page.into());
             String::new()
         }
         Err(error) => format!("  documentation/{}: not packed. {error:#}\n", page::NAME),
     };
+    let with_page = without_page.is_empty();
     let core = library::root_package(&project)?;
     licences::add(&mut shared, &project, &built[0].1, &zig, &platforms, core)?;
     for fmu in FMUS {
@@ -266,6 +264,10 @@ fn native(all: bool) -> Result<()> {
     let folder = project.workspace_root.join("target/native");
     let count = if all { PLATFORMS.len() } else { 1 };
     let (built, missing) = toolchains(&PLATFORMS[..count])?;
+    if folder.exists() {
+        // of platforms that are not built for, whose licences would not be there
+        fs::remove_dir_all(&folder).with_context(|| format!("cannot remove {folder}"))?;
+    }
     println!("{folder}:");
     for (platform, toolchain) in &built {
         let place = folder.join(platform.folder);
@@ -286,10 +288,7 @@ fn native(all: bool) -> Result<()> {
         package,
     )?;
     for (name, bytes) in licences {
-        let path = folder.join(name);
-        fs::create_dir_all(path.parent().unwrap_or(&folder))
-            .with_context(|| format!("cannot make the folder of {path}"))?;
-        fs::write(&path, bytes).with_context(|| format!("cannot write {path}"))?;
+        write(&folder.join(name), bytes)?;
     }
     print!("{missing}");
     Ok(())
@@ -303,10 +302,9 @@ fn write_guide() -> Result<()> {
         let folder = project.target_directory.join("guide").join(fmu.identifier);
         let path = folder.join("index.html");
         let text = guide::html(project.workspace_root.as_std_path(), fmu, page.is_some())?;
-        fs::create_dir_all(&folder)?;
-        fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
+        write(&path, text)?;
         if let Some(page) = &page {
-            fs::write(folder.join(page::NAME), page)?;
+            write(&folder.join(page::NAME), page)?;
         }
         println!("{path}");
     }
@@ -343,42 +341,22 @@ fn check(bytes: &[u8], platform: &Platform, names: &[&str]) -> Result<String> {
     ))
 }
 
-/// Writes each description to its place in the workspace, or compares the two.
-fn describe(check: bool) -> Result<()> {
+/// Writes each description to its place in the workspace.
+fn describe() -> Result<()> {
     let root = project()?.workspace_root;
     for fmu in FMUS {
-        let path = root.join(fmu.description());
-        let text = (fmu.xml)();
-        if !check {
-            if let Some(folder) = path.parent() {
-                fs::create_dir_all(folder).with_context(|| format!("cannot make {folder}"))?;
-            }
-            fs::write(&path, text).with_context(|| format!("cannot write {path}"))?;
-            println!("{path} is written");
-            continue;
-        }
-        let present = fs::read_to_string(&path)
-            .with_context(|| format!("cannot read {path}; run `cargo fmu describe`"))?;
-        if let Some(line) = first_difference(&present, &text) {
-            bail!(
-                "{path} differs from the variable table, first in line {line}; run `cargo fmu describe`"
-            );
-        }
-        println!("{path} is up to date");
+        write(&root.join(fmu.description()), (fmu.xml)())?;
+        println!("{} is written", fmu.description());
     }
     Ok(())
 }
 
-/// Number of the first line, from 1, in which two texts differ.
-fn first_difference(one: &str, other: &str) -> Option<usize> {
-    if one == other {
-        return None;
+/// Writes a file, and the folder that it is in.
+fn write(path: &Utf8Path, contents: impl AsRef<[u8]>) -> Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).with_context(|| format!("cannot make {folder}"))?;
     }
-    let equal = one
-        .split('\n')
-        .zip(other.split('\n'))
-        .take_while(|(left, right)| left == right);
-    Some(equal.count() + 1)
+    fs::write(path, contents).with_context(|| format!("cannot write {path}"))
 }
 
 /// The workspace that the current folder belongs to.
@@ -395,13 +373,12 @@ fn kibibytes(bytes: u64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::first_difference;
+    use super::*;
 
     #[test]
-    fn first_difference_counts_lines_from_one() {
-        assert_eq!(first_difference("a\nb\n", "a\nb\n"), None);
-        assert_eq!(first_difference("a\nb\n", "a\nc\n"), Some(2));
-        assert_eq!(first_difference("a\n", "a\nb\n"), Some(2));
-        assert_eq!(first_difference("", "a\n"), Some(1));
+    fn what_cannot_be_written_is_named() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml/folder/file");
+        let error = write(Utf8Path::new(path), "").expect_err("a file is no folder");
+        assert!(error.to_string().contains("/Cargo.toml/folder"), "{error}");
     }
 }

@@ -12,7 +12,7 @@ use object::{Architecture, BinaryFormat};
 use crate::library;
 use crate::licences;
 use crate::platform::Platform;
-use crate::toolchain::Toolchain;
+use crate::toolchain::{Toolchain, tool};
 use crate::zig::said;
 
 /// Name of the page in the FMU, below `documentation`.
@@ -65,13 +65,6 @@ pub fn html(project: &Metadata) -> Result<String> {
         said(&built)
     );
     fs::read_to_string(&output).with_context(|| format!("cannot read {output}"))
-}
-
-/// Where a tool is, which the Makefile says in the environment.
-fn tool(name: &str) -> Result<std::ffi::OsString> {
-    env::var_os(name).with_context(|| {
-        format!("the environment has no {name}; run `make`, or eval \"$(make -s env)\" first")
-    })
 }
 
 /// Compiles the actuator to WebAssembly and returns the path of the file.

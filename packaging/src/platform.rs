@@ -5,7 +5,8 @@ use object::{Architecture, BinaryFormat};
 /// A platform, and what its binary may demand from the system it is loaded on.
 #[derive(Debug)]
 pub struct Platform {
-    /// Name of the folder below `binaries/`: FMI 2.0's where it has one, else the tuple of FMI 3.0.
+    /// Name of the folder below `binaries/`: FMI 2.0's where it has one, else, as 2.0.4 says, the tuple of
+    /// FMI 3.0.
     pub folder: &'static str,
     /// Target triple of the Rust compiler.
     pub triple: &'static str,

@@ -1,6 +1,5 @@
 //! Presets: start values as parameter values of SSP (`.ssv`), inside and beside the FMU.
 
-use std::env;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -9,6 +8,7 @@ use anyhow::{Context, Result, ensure};
 use cargo_metadata::Metadata;
 
 use crate::archive::Entries;
+use crate::toolchain::tool;
 use crate::zig::said;
 
 /// What the Python package, which holds the presets, is asked for.
@@ -21,9 +21,7 @@ const PROGRAM: &str =
 /// # Errors
 /// If the Python of the project is not known or cannot run the package, or there is no preset.
 pub fn read(project: &Metadata, identifier: &str) -> Result<Entries> {
-    let python = env::var_os("PYTHON_WITH_PYGMENTS").context(
-        "the environment has no PYTHON_WITH_PYGMENTS; run `make`, or eval \"$(make -s env)\" first",
-    )?;
+    let python = tool("PROJECT_PYTHON")?;
     let beside = project.workspace_root.join("target/fmu/presets");
     let folder = beside.join(identifier);
     if folder.exists() {

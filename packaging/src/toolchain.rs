@@ -1,4 +1,4 @@
-//! Finds a Rust compiler with a standard library for a platform.
+//! Finds a Rust compiler with a standard library for a platform, and the other tools.
 
 use std::env;
 use std::ffi::OsString;
@@ -77,6 +77,18 @@ impl Toolchain {
         ensure!(output.status.success(), "rustc failed: {}", said(&output));
         String::from_utf8(output.stdout).context("rustc answered no text")
     }
+}
+
+/// Where a tool is, which the Makefile says in the environment.
+///
+/// # Errors
+/// If it says nothing: what to do.
+pub fn tool(name: &str) -> Result<OsString> {
+    env::var_os(name)
+        .filter(|place| !place.is_empty())
+        .with_context(|| {
+            format!("the environment has no {name}; run `make`, or eval \"$(make -s env)\" first")
+        })
 }
 
 /// Lets rustup add the platform's target to the toolchain in use.

@@ -42,6 +42,15 @@ def test_the_pages_cite_the_paper_as_the_citation_does(page):
     assert f"{AUTHORS[0]}, {AUTHORS[1]} and {AUTHORS[2]}" in text
 
 
+def test_every_member_takes_version_and_licence_from_the_workspace():
+    workspace = manifest(REPOSITORY / "Cargo.toml")["workspace"]
+    members = [path for pattern in (".", *workspace["members"]) for path in REPOSITORY.glob(f"{pattern}/Cargo.toml")]
+    assert len(members) == 6
+    for path in members:
+        own = manifest(path)["package"]
+        assert {key for key in workspace["package"] if own[key] != {"workspace": True}} == set(), path
+
+
 @pytest.mark.parametrize("path", CRATES, ids=lambda path: str(path.parent.relative_to(REPOSITORY)))
 def test_every_crate_has_the_lints_of_the_workspace(path):
     wanted = manifest(REPOSITORY / "Cargo.toml")["workspace"]["lints"]

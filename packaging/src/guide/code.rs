@@ -1,11 +1,11 @@
 //! Blocks of code in colours, by Pygments.
 
-use std::env;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, ensure};
 
+use crate::toolchain::tool;
 use crate::zig::said;
 
 const PROGRAM: &str = include_str!("colours.py");
@@ -24,9 +24,7 @@ pub struct Block {
 /// # Errors
 /// If the Python of the project cannot be started, or Pygments does not know a language.
 pub fn coloured(blocks: &[Block]) -> Result<Vec<String>> {
-    let python = env::var_os("PYTHON_WITH_PYGMENTS").context(
-        "the environment has no PYTHON_WITH_PYGMENTS; run `make`, or eval \"$(make -s env)\" first",
-    )?;
+    let python = tool("PROJECT_PYTHON")?;
     let mut child = Command::new(&python)
         .args(["-c", PROGRAM])
         .stdin(Stdio::piped())
