@@ -5,6 +5,8 @@
 //! refused changes nothing and answers false; [`actuator_message`] then tells why.
 #![expect(unsafe_code, reason = "exported names: no function here is unsafe")]
 
+mod equilibrium;
+
 use std::cell::RefCell;
 use std::f64::consts::TAU;
 use std::mem;
@@ -12,7 +14,6 @@ use std::mem;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration, energy};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Parameters};
-use dielectric_elastomer_actuator::arithmetic::jet::Dual;
 use dielectric_elastomer_actuator::instance::{Fault, Instance, Message, Type};
 use dielectric_elastomer_actuator::model::variables::{Kind, value_reference};
 use dielectric_elastomer_actuator::nondimensional::{Nondimensional, VARIABLES};
@@ -20,10 +21,6 @@ use dielectric_elastomer_actuator::solver::State;
 
 /// Next to λ = 1 the stagnation curve is taken at this distance from it, where 0/0 is far enough.
 const NEAR_REST: f64 = 1e-5;
-
-/// The factor between the stretches at which an equilibrium is looked for, and how often the last two are halved.
-const STRIDE: f64 = 1.01;
-const HALVINGS: usize = 60;
 
 struct Page {
     actuator: Instance<Nondimensional>,
@@ -126,48 +123,6 @@ const UNLOADED: Load<f64> = Load {
     prestress: 0.0,
 };
 
-/// The angular frequency of small oscillations about an equilibrium; NaN where it is unstable.
-fn small_frequency(coefficients: &Coefficients, load: Load<f64>, equilibrium: f64) -> f64 {
-    let stretch = Dual::new(equilibrium, 1.0);
-    let load = Load {
-        voltage_squared: Dual::constant(load.voltage_squared),
-        prestress: Dual::constant(load.prestress),
-    };
-    let still = Dual::constant(0.0);
-    let response = acceleration(&coefficients.same(stretch), load, stretch, still);
-    (-response.slope()).sqrt()
-}
-
-/// The first equilibrium on the way on which the load leads from λ = 1.
-fn equilibrium(
-    coefficients: &Coefficients,
-    load: Load<f64>,
-    [lowest, highest]: [f64; 2],
-) -> Option<f64> {
-    let force = |stretch| acceleration(coefficients, load, stretch, 0.0);
-    let (way, stride) = if force(1.0) < 0.0 {
-        (-1.0, 1.0 / STRIDE)
-    } else {
-        (1.0, STRIDE)
-    };
-    let (mut before, mut behind) = (1.0, stride);
-    while way * force(behind) > 0.0 {
-        (before, behind) = (behind, behind * stride);
-        if !(lowest..highest).contains(&behind) {
-            return None;
-        }
-    }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (before + behind);
-        if way * force(middle) > 0.0 {
-            before = middle;
-        } else {
-            behind = middle;
-        }
-    }
-    Some(behind)
-}
-
 fn at_rest(position: f64) -> State {
     State {
         position,
@@ -244,7 +199,7 @@ pub extern "C" fn actuator_fold(
             scales.time,
             scales.voltage,
             shear_modulus,
-            TAU / small_frequency(&bare, UNLOADED, 1.0),
+            TAU / equilibrium::small_frequency(&bare, UNLOADED, 1.0),
             aspect,
             surface_energy,
             surface_tension,
@@ -375,9 +330,7 @@ pub extern "C" fn actuator_frequency() -> f64 {
             ..load
         };
         let limits = view.scene.limits;
-        equilibrium(&coefficients, load, [limits.lower, limits.upper]).map_or(f64::NAN, |stretch| {
-            small_frequency(&coefficients, load, stretch)
-        })
+        equilibrium::frequency(&coefficients, load, [limits.lower, limits.upper])
     })
 }
 
