@@ -36,6 +36,27 @@ class SavedState(NamedTuple):
     """What the last addition to `time` rounded off."""
 
 
+class _Reasons:
+    """A block in which a refused call gets the FMU's reason as a note. As a generator it takes a third of a call."""
+
+    def __init__(self, messages: list[LogMessage]):
+        self._messages = messages
+
+    def explain(self, refusal: FMICallException) -> None:
+        """Add the last message, if it is of this call."""
+        if self._messages and self._messages[-1].status == refusal.status:
+            refusal.add_note(self._messages[-1].text)
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        if isinstance(value, FMICallException):
+            self.explain(value)
+
+
 class Actuator:
     """One instance of a packed actuator; a context manager, so that library and folder are given back.
 
@@ -66,6 +87,7 @@ class Actuator:
         self.time = 0.0
         self.description = described(path)
         self._variables = Variables(self.description)
+        self._reasons = _Reasons(self.messages)
         self._folder = tempfile.TemporaryDirectory(prefix="actuator-fmu-")
         fmpy.extract(str(path), unzipdir=self._folder.name)
         self._instance: FMU2Slave | None = instantiate(self._folder.name, self.description, self.messages)
@@ -150,10 +172,10 @@ class Actuator:
             self._fmu.reset()
         self.messages.clear()
         self.time = start_time
-        with self._reasons():
+        with self._reasons:
             self._fmu.setupExperiment(tolerance=tolerance, startTime=start_time, stopTime=stop_time)
         self.set(values)
-        with self._reasons():
+        with self._reasons:
             self._fmu.enterInitializationMode()
             self._fmu.exitInitializationMode()
 
@@ -181,7 +203,7 @@ class Actuator:
             group.values[:] = [group.access.number(name, values[name]) for name in group.names]
         self._fresh = False
         for group in groups:
-            with self._reasons():
+            with self._reasons:
                 group.write()
 
     def set_input_derivatives(self, derivatives: Mapping[str, Sequence[float]]) -> None:
@@ -195,7 +217,7 @@ class Actuator:
             for order, value in enumerate(values, start=1)
         ]
         if triples:
-            with self._reasons():
+            with self._reasons:
                 self._fmu.setRealInputDerivatives(*(list(column) for column in zip(*triples)))
 
     def output_derivatives(self, name: str, order: int) -> list[float]:
@@ -203,14 +225,14 @@ class Actuator:
         if order == 0:
             return []
         references = [self._variables.reference(name)] * order
-        with self._reasons():
+        with self._reasons:
             return list(self._fmu.getRealOutputDerivatives(references, list(range(1, order + 1))))
 
     def get(self, *names: str) -> Any:
         """Present value of one variable, or of several as a list in the given order."""
         found: dict[str, Any] = {}
         for group in self._variables.grouped(self._fmu, names):
-            with self._reasons():
+            with self._reasons:
                 group.read()
             found.update(zip(group.names, group.values))
         return found[names[0]] if len(names) == 1 else [found[name] for name in names]
@@ -218,7 +240,7 @@ class Actuator:
     def directional_derivatives(self, unknowns: Iterable[str], known: str) -> list[float]:
         """∂unknown/∂known of each unknown at the present state, exact but for rounding."""
         references = [self._variables.reference(name) for name in unknowns]
-        with self._reasons():
+        with self._reasons:
             return list(self._fmu.getDirectionalDerivative(references, [self._variables.reference(known)], [1.0]))
 
     @contextmanager
@@ -235,7 +257,7 @@ class Actuator:
 
     def save(self) -> SavedState:
         """The whole state, for `restore` of any instance of the same FMU in this or a later process."""
-        with self._reasons():
+        with self._reasons:
             state = self._fmu.getFMUstate()
             try:
                 return SavedState(self._time, self._fmu.serializeFMUstate(state), self._rounded)
@@ -244,7 +266,7 @@ class Actuator:
 
     def restore(self, saved: SavedState) -> None:
         """Go on from a saved state, bit for bit. Damaged bytes, or those of another version, are refused."""
-        with self._reasons():
+        with self._reasons:
             state = self._fmu.deSerializeFMUstate(saved.state)
             try:
                 self._fmu.setFMUstate(state)
@@ -261,7 +283,7 @@ class Actuator:
             if refusal.status == fmi2Discard and self._fmu.getBooleanStatus(fmi2Terminated):
                 self.time = self._fmu.getRealStatus(fmi2LastSuccessfulTime)
                 return False
-            self._explain(refusal)
+            self._reasons.explain(refusal)
             raise
         # A sum of many steps would drift: what one addition rounds off is added with the next.
         step = communication_step + self._rounded
@@ -331,18 +353,6 @@ class Actuator:
                 response["time"][step] = self.time
                 return response[: step + 1]
         return response
-
-    def _explain(self, refusal: FMICallException) -> None:
-        if self.messages and self.messages[-1].status == refusal.status:
-            refusal.add_note(self.messages[-1].text)
-
-    @contextmanager
-    def _reasons(self) -> Iterator[None]:
-        try:
-            yield
-        except FMICallException as refusal:
-            self._explain(refusal)
-            raise
 
 
 def frame(response: np.ndarray, units: Mapping[str, str] | None = None) -> Any:
