@@ -3,10 +3,10 @@
 use dielectric_elastomer_actuator::actuator::Coefficients;
 use dielectric_elastomer_actuator::actuator::motion::{Load, acceleration};
 use dielectric_elastomer_actuator::arithmetic::jet::Dual;
+use dielectric_elastomer_actuator::arithmetic::roots::crossing;
 
-/// The factor between the stretches at which an equilibrium is looked for, and how often the last two are halved.
+/// The factor between the stretches at which an equilibrium is looked for.
 const STRIDE: f64 = 1.01;
-const HALVINGS: usize = 60;
 
 /// The angular frequency of small oscillations about the equilibrium under a load; NaN where there is none.
 pub fn frequency(coefficients: &Coefficients, load: Load<f64>, limits: [f64; 2]) -> f64 {
@@ -42,13 +42,5 @@ fn first(coefficients: &Coefficients, load: Load<f64>, [lowest, highest]: [f64; 
             return None;
         }
     }
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (before + behind);
-        if way * force(middle) > 0.0 {
-            before = middle;
-        } else {
-            behind = middle;
-        }
-    }
-    Some(behind)
+    Some(crossing(before, behind, force))
 }
