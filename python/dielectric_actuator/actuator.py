@@ -200,7 +200,7 @@ class Actuator:
         """
         groups = self._variables.grouped(self._fmu, values)
         for group in groups:
-            group.values[:] = [group.access.number(name, values[name]) for name in group.names]
+            group.take(values)
         self._fresh = False
         for group in groups:
             with self._reasons:

@@ -13,8 +13,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import native
-from .fmu import UnknownName, described, located
+from . import fmu, native
+from .fmu import UnknownName
 
 Floats = NDArray[np.float64]
 
@@ -44,12 +44,7 @@ TYPICAL: Mapping[str, float] = {"gamma_s": 0.02, "tau_s": 0.02, "E_s": 0.1, "for
 @functools.cache
 def limits() -> dict[str, tuple[float, float, float]]:
     """Start value, smallest and largest value of each of `NAMES`, in SI units."""
-    variables = described(located("si")).modelVariables
-    return {
-        variable.name: (float(variable.start), float(variable.min), float(variable.max))
-        for variable in variables
-        if variable.name in NAMES
-    }
+    return fmu.limits("si", NAMES)
 
 
 def nondimensional(device: Mapping[str, float]) -> tuple[dict[str, float], Floats]:

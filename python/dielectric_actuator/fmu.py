@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
+import math
 import platform
-from collections.abc import Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -67,6 +68,19 @@ def described(path: Path) -> ModelDescription:
             f"{path} is an FMU for {kind} in FMI {found.fmiVersion}; it must be one for co-simulation in FMI 2.0"
         )
     return found
+
+
+def limits(model: str, names: Container[str]) -> dict[str, tuple[float, float, float]]:
+    """Start value, smallest and largest value of these variables of one of `MODELS`."""
+    return {
+        variable.name: (
+            float(variable.start),
+            -math.inf if variable.min is None else float(variable.min),
+            math.inf if variable.max is None else float(variable.max),
+        )
+        for variable in described(located(model)).modelVariables
+        if variable.name in names
+    }
 
 
 class UnknownName(KeyError):
@@ -139,15 +153,6 @@ class Access(NamedTuple):
     whole: tuple[int, int] | None = None
     """The smallest and the largest value of a type that has whole numbers only."""
 
-    def number(self, name: str, value: Any) -> Any:
-        """The value as the setter takes it: whole where the type is, of whichever type it is given as."""
-        if self.whole is None:
-            return value
-        lowest, highest = self.whole
-        if not (lowest <= value <= highest and value == int(value)):
-            raise ValueError(f"{name} is {value}; it must be a whole number from {lowest} to {highest}")
-        return int(value)
-
 
 _INTEGER = Access("Integer", fmi2Integer, np.int32, (-(2**31), 2**31 - 1))
 _ACCESS = {
@@ -163,12 +168,23 @@ class Group:
 
     def __init__(self, instance: FMU2Slave, access: Access, names: list[str], references: list[int]):
         self.names = names
-        self.access = access
+        self._whole = access.whole
         self._component = instance.component
         self._getter = getattr(instance, "fmi2Get" + access.function)
         self._setter = getattr(instance, "fmi2Set" + access.function)
         self._references = (fmi2ValueReference * len(references))(*references)
         self.values = (access.c_type * len(references))()
+
+    def take(self, values: Mapping[str, Any]) -> None:
+        """Fill `values` for `write`. A whole number may be given in any type; ValueError where it is none."""
+        numbers = [values[name] for name in self.names]
+        if self._whole is not None:
+            lowest, highest = self._whole
+            for name, value in zip(self.names, numbers):
+                if not (lowest <= value <= highest and value == int(value)):
+                    raise ValueError(f"{name} is {value}; it must be a whole number from {lowest} to {highest}")
+            numbers = list(map(int, numbers))
+        self.values[:] = numbers
 
     def read(self) -> None:
         """Fill `values` from the instance."""

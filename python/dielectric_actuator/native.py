@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .fmu import UnknownName, described, located
+from . import fmu
+from .fmu import UnknownName
 from .measured import check
 
 Floats = NDArray[np.float64]
@@ -88,16 +89,7 @@ def known_names() -> tuple[str, ...]:
 @functools.cache
 def limits() -> dict[str, tuple[float, float, float]]:
     """Start value, smallest and largest value of each of `scene_names` and `known_names`."""
-    description = described(located("nondimensional"))
-    found = {
-        variable.name: (
-            float(variable.start),
-            -math.inf if variable.min is None else float(variable.min),
-            math.inf if variable.max is None else float(variable.max),
-        )
-        for variable in description.modelVariables
-        if variable.name in scene_names() or variable.name in known_names()
-    }
+    found = fmu.limits("nondimensional", {*scene_names(), *known_names()})
     return {**found, "phi_scale": (1.0, -math.inf, math.inf), "time_scale": (1.0, math.ulp(0.0), math.inf)}
 
 

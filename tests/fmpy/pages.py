@@ -1,4 +1,4 @@
-"""Tables of the pages that the examples are described on."""
+"""Tables of the pages that say what an example prints."""
 
 from pathlib import Path
 

@@ -2,23 +2,18 @@
 
 import html.parser
 import re
-import subprocess
 import zipfile
 from pathlib import Path
 
 import fmpy
 import pytest
 
+import linked
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 LARGEST_BINARY = {"fmu_path": 400_000, "si_path": 1_420_000}
 # On Windows the linker adds 40 kB of zig's run-time library, whose functions it cannot leave out one by one.
 MORE = {"win64": 70_000}
-TRIPLES = {
-    "linux64": "x86_64-unknown-linux-gnu",
-    "win64": "x86_64-pc-windows-gnullvm",
-    "aarch64-linux": "aarch64-unknown-linux-gnu",
-    "darwin64": "x86_64-apple-darwin",
-}
 
 
 @pytest.fixture(scope="module", params=LARGEST_BINARY)
@@ -126,18 +121,12 @@ def test_icon_is_a_square_png(archive):
 
 def test_licence_of_every_linked_crate_is_there(archive, binaries):
     """Cargo's own list of what is linked on these platforms, and no other crate."""
-    words = ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]
-    words += [word for folder in binaries for word in ("--target", TRIPLES[folder])]
-    printed = subprocess.run(
-        [*words, "--package", "dielectric-elastomer-actuator"],
-        cwd=REPOSITORY, capture_output=True, text=True, check=True,
-    ).stdout  # fmt: skip
-    linked = set(re.findall(r"^(\S+) v(\S+)(?: \(\*\))?$", printed, flags=re.MULTILINE))
-    assert ("fmi", "0.8.0") in linked
+    crates = linked.crates("dielectric-elastomer-actuator", [linked.TRIPLES[folder] for folder in binaries])
+    assert ("fmi", "0.8.0") in crates
     # FMI 2.0 has a reader begin with this file.
     text = archive.read("documentation/licenses/license.txt").decode()
     list_of_crates = text.partition("=" * 80)[0]
-    assert set(re.findall(r"^(\S+) (\d\S*): ", list_of_crates, flags=re.MULTILINE)) == linked
+    assert set(re.findall(r"^(\S+) (\d\S*): ", list_of_crates, flags=re.MULTILINE)) == crates
     for name in ("LICENSE-APACHE.txt", "LICENSE-MIT.txt", "llvm-libunwind.txt", "rust-standard-library.html"):
         assert archive.read(f"documentation/licenses/{name}") and name in list_of_crates
     assert "Rust Standard Library" in archive.read("documentation/licenses/rust-standard-library.html").decode()

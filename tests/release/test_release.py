@@ -4,7 +4,6 @@ built, with a stand-in of the wheel."""
 import hashlib
 import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -19,6 +18,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "packaging"))
 
 import release
 
+import linked
+
 WHEEL = f"dielectric_actuator-{release.workspace_version()}-py3-none-any.whl"
 MEMBERS = {
     "DielectricElastomerActuator.fmu": "nondimensional-fmu",
@@ -27,12 +28,6 @@ MEMBERS = {
     release.PAGE: "page-core",
 }
 """Each part that is shipped, with the member of the workspace that it is made of."""
-TRIPLES = {
-    "linux64": "x86_64-unknown-linux-gnu",
-    "win64": "x86_64-pc-windows-gnullvm",
-    "aarch64-linux": "aarch64-unknown-linux-gnu",
-    "darwin64": "x86_64-apple-darwin",
-}
 
 
 @pytest.fixture
@@ -105,26 +100,16 @@ def test_the_bill_says_what_is_in_each_part(bill):
         assert any(ref.startswith("npm:uplot@") for ref in inside)
 
 
-def tree(member: str, triples: list[str]) -> set[str]:
-    """Cargo's own list of the crates of others that are linked into a member of the workspace."""
-    words = ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]
-    words += [word for triple in triples for word in ("--target", triple)]
-    printed = subprocess.run(
-        [*words, "--package", member], cwd=release.PROJECT, capture_output=True, text=True, check=True
-    ).stdout
-    return {f"cargo:{name}@{version}" for name, version in re.findall(r"^(\S+) v(\S+)(?: \(\*\))?$", printed, re.M)}
-
-
 @pytest.mark.parametrize("part", MEMBERS)
 def test_the_bill_lists_the_crates_of_cargos_tree(bill, part):
     """`cargo metadata` lists what any member of the workspace asks for: `fmi` and five times as many for the page."""
     with zipfile.ZipFile(release.TARGET / "fmu" / release.FMUS[0]) as fmu:
         folders = {name.split("/")[1] for name in fmu.namelist() if name.startswith("binaries/")}
     if part == release.NATIVE:
-        folders = {path.name for path in (release.TARGET / "native").iterdir()} & TRIPLES.keys()
-    triples = ["wasm32-unknown-unknown"] if part == release.PAGE else [TRIPLES[name] for name in sorted(folders)]
+        folders = {path.name for path in (release.TARGET / "native").iterdir()} & linked.TRIPLES.keys()
+    triples = ["wasm32-unknown-unknown"] if part == release.PAGE else [linked.TRIPLES[name] for name in sorted(folders)]
     listed = {ref for ref in parts_of(bill)[part] if ref.startswith("cargo:")}
-    assert listed == tree(MEMBERS[part], triples)
+    assert listed == {f"cargo:{name}@{version}" for name, version in linked.crates(MEMBERS[part], triples)}
     assert any(ref.startswith("cargo:fmi@") for ref in listed) == (part != release.PAGE)
 
 
