@@ -190,7 +190,7 @@ examples: fmu native $(EXAMPLES_INSTALLED) $(PACKAGE_INSTALLED)
 	$(PYTHON_IN_VENV) examples/$$example.py || exit 1; done
 
 # While the FMU is packed, what the tests need is installed; then the checks of the sources run beside the packing.
-test: $(INSTALLED) $(NODE_INSTALLED)
+test: $(INSTALLED)
 	@rm -rf $(REPORTS); mkdir -p $(REPORTS)
 	@{ $(MAKE) --no-print-directory fmu native || echo packing >>$(REPORTS)/failed; touch $(PACKED); } & packing=$$!; \
 	$(MAKE) --no-print-directory install-tests || { kill $$packing; exit 1; }; \
