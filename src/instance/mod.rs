@@ -119,12 +119,10 @@ impl<M: Model> Instance<M> {
     #[inline]
     pub fn view(&self) -> View<'_, M> {
         match &self.simulation {
-            Simulation::Run(run) => View {
-                scene: &self.scene,
-                place: Place::On(run.motion()),
-                time: run.time(),
-                collapse: run.collapse(),
-            },
+            Simulation::Run(run) => {
+                let place = Place::On(run.motion());
+                View::new(&self.scene, place, run.time(), run.collapse())
+            }
             _ => self.view_without_run(),
         }
     }
@@ -141,12 +139,7 @@ impl<M: Model> Instance<M> {
                 (Exchange::new(scene, *time).place(), time, None)
             }
         };
-        View {
-            scene,
-            place,
-            time,
-            collapse,
-        }
+        View::new(scene, place, time, collapse)
     }
 
     /// Sets start time, stop time and tolerance of the simulation. Returns a

@@ -253,12 +253,7 @@ impl<M: Model> Run<M> {
     fn fail(&mut self, scene: &M::Scene, failure: Failure, current: f64) -> Fault {
         let time = Shortest(self.clock.value());
         let place = self.motion.whereabouts();
-        let view = View::<M> {
-            scene,
-            place: Place::On(&self.motion),
-            time: &self.clock,
-            collapse: None,
-        };
+        let view = View::<M>::new(scene, Place::On(&self.motion), &self.clock, None);
         let excess = M::excess(&view).map_or_else(String::new, |excess| format!("; {excess}"));
         let at = format!("the integration stopped at time {time} and {place}");
         match failure {

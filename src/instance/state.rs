@@ -17,7 +17,7 @@ use crate::model::Model;
 use crate::model::variables::Access;
 
 /// Grows with each change of what the bytes mean.
-pub const LAYOUT: u16 = 21;
+pub const LAYOUT: u16 = 22;
 
 /// Bytes that are allocated for a first save. They are enlarged where they do not suffice.
 const LEAST_ROOM: usize = 1024;

@@ -63,11 +63,8 @@ impl<M: Model> Instance<M> {
         if self.phase == Phase::ContinuousTime && state != M::state(&view) {
             return Err("a continuous state jumps by that; set it in event mode".into());
         }
-        let tuned = View {
-            scene,
-            place: Place::of_state(*view.time, state),
-            ..view
-        };
+        let place = Place::of_state(*view.time, state);
+        let tuned = View::new(scene, place, view.time, view.collapse);
         M::check_state(&tuned)?;
         M::excess(&tuned).map_or(Ok(state), Err)
     }

@@ -8,6 +8,7 @@ pub mod variables;
 
 pub use recording::Recording;
 
+use std::cell::OnceCell;
 use std::fmt::Debug;
 
 use serde::de::DeserializeOwned;
@@ -340,7 +341,7 @@ pub enum Place<'a, M: Model> {
 }
 
 /// What a host can read at the present communication point. Each quantity is computed when it is
-/// read, and only then.
+/// read, and only then; what is computed for several of them, when the first of those is read.
 pub struct View<'a, M: Model> {
     /// What the host has set.
     pub scene: &'a M::Scene,
@@ -350,6 +351,8 @@ pub struct View<'a, M: Model> {
     pub time: &'a DoubleDouble,
     /// Whether and when the motion came to a limit.
     pub collapse: Option<&'a Collapse<M::Limit>>,
+    /// The quantities that are computed together, once one of them was read.
+    pub sample: OnceCell<M::Sample<f64>>,
 }
 
 impl<M: Model> Place<'_, M> {
@@ -372,15 +375,25 @@ impl<M: Model> Clone for Place<'_, M> {
 
 impl<M: Model> Copy for Place<'_, M> {}
 
-impl<M: Model> Clone for View<'_, M> {
-    fn clone(&self) -> Self {
-        *self
+impl<'a, M: Model> View<'a, M> {
+    /// What can be read there.
+    #[inline]
+    #[must_use]
+    pub fn new(
+        scene: &'a M::Scene,
+        place: Place<'a, M>,
+        time: &'a DoubleDouble,
+        collapse: Option<&'a Collapse<M::Limit>>,
+    ) -> Self {
+        View {
+            scene,
+            place,
+            time,
+            collapse,
+            sample: OnceCell::new(),
+        }
     }
-}
 
-impl<M: Model> Copy for View<'_, M> {}
-
-impl<M: Model> View<'_, M> {
     /// A result by its value reference, with its value, for messages.
     #[must_use]
     pub fn in_words(&self, reference: u32) -> String {

@@ -56,7 +56,7 @@ impl View<'_, Si> {
             prestress: Dual::new(scene.force.at(offset), change.force.at(0.0)) / basis.scales.force,
         };
         let rate = source_rate * basis.scales.time / unit;
-        basis.sample(load, rate, &moved, None, (held, own))
+        basis.sample(&basis.local(), load, rate, &moved, None, (held, own))
     }
 
     /// What the source imposes, in its unit, and its rate per second.

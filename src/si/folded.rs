@@ -37,12 +37,16 @@ impl SiScene {
     }
 
     /// The actuator in nondimensional numbers.
+    #[inline]
     pub(super) fn folded(&self) -> Folded {
-        if let Some(known) = self.memory.0.get()
-            && self.is_still(&known.of)
-        {
-            return known;
+        match self.memory.0.get() {
+            Some(known) if self.is_still(&known.of) => known,
+            _ => self.folded_anew(),
         }
+    }
+
+    #[inline(never)]
+    fn folded_anew(&self) -> Folded {
         let of = (self.device, self.stiffening, self.source());
         let described = self.described();
         let folded = Folded {

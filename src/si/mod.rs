@@ -233,7 +233,7 @@ impl Model for Si {
     fn check_state(view: &View<Si>) -> Result<(), String> {
         // The state as such: the motion may have been followed with other parameters.
         let place = Place::of_state(*view.time, view.state());
-        let view = View { place, ..*view };
+        let view = View::new(view.scene, place, view.time, view.collapse);
         let read = |row: &u32| VARIABLES[*row as usize].value(&view);
         if view.is_admitted() && Si::DERIVATIVES.iter().all(|row| read(row).is_finite()) {
             return Ok(());

@@ -11,7 +11,7 @@ use crate::arithmetic::jet::{Dual, HIGHEST_ORDER, TimeSeries};
 use crate::arithmetic::number::{Number, Parameter, ParameterOf};
 use crate::model::View;
 use crate::solver::State;
-use crate::solver::coupled::Stage;
+use crate::solver::coupled::{LocalCoupledEquation, Stage};
 
 macro_rules! sample {
     (
@@ -201,11 +201,6 @@ impl Basis {
         }
     }
 
-    pub fn load<N: Number>(&self, offset: N) -> Load<N> {
-        use crate::solver::coupled::LocalCoupledEquation;
-        self.local().load(offset)
-    }
-
     pub fn source_rate(&self) -> f64 {
         let drive = self.drive.at(&self.time);
         drive.voltage(Dual::new(0.0, 1.0)).slope()
@@ -217,11 +212,12 @@ impl<P: Parameter> Basis<P> {
         LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
     }
 
-    /// The sample at a stage. `source_rate` is the derivative of what the source imposes. `charging` is the
+    /// The sample at a stage of `local`, which is [`Basis::local`]. `source_rate` is the derivative of what the source imposes. `charging` is the
     /// derivative of the charge, where it is known more accurately than from its equation. `states` are the charge
     /// and the dashpots; those that are states of the stage are taken from there.
     pub fn sample<N: Number>(
         &self,
+        local: &LocalDevice<P>,
         load: Load<N>,
         source_rate: N,
         stage: &Stage<N>,
@@ -231,7 +227,7 @@ impl<P: Parameter> Basis<P> {
     where
         P: ParameterOf<N>,
     {
-        let (device, scales, local) = (&self.device, &self.scales, self.local());
+        let (device, scales) = (&self.device, &self.scales);
         let number = |value: f64| stage.position.same(value);
         let lift = |parameter: P| parameter.lift(stage.position);
         let per_second = number(1.0) / lift(scales.time);
@@ -346,15 +342,21 @@ impl View<'_, Si> {
     }
 
     /// All quantities at the present.
-    #[must_use]
-    pub(super) fn sample(&self) -> Sample<f64> {
-        let (basis, stage) = self.basis();
-        let (load, rate) = (basis.load(0.0), basis.source_rate());
+    fn sample(&self) -> &Sample<f64> {
+        self.sample.get_or_init(|| self.computed_sample())
+    }
+
+    #[inline(never)]
+    fn computed_sample(&self) -> Sample<f64> {
+        let state = self.state();
+        let (basis, stage) = self.basis_in(&state);
+        let local = basis.local();
+        let (load, rate) = (local.load(0.0), basis.source_rate());
         let charging = self
             .charging(load.source)
             .map(|current| current / basis.scales.current());
-        let states = own(&self.state());
-        basis.sample(load, rate, &stage, charging, (self.is_held(), states))
+        let own = (self.is_held(), own(&state));
+        basis.sample(&local, load, rate, &stage, charging, own)
     }
 
     /// The motion from now on as power series of the time in s. Derivatives up to `order` are exact.
@@ -363,7 +365,7 @@ impl View<'_, Si> {
         let local = basis.local();
         // In the nondimensional time from now on; a second is 1/t0 of its units.
         let offset = TimeSeries::variable();
-        let load = basis.load(offset);
+        let load = local.load(offset);
         let mut series = Stage {
             position: TimeSeries::constant(stage.position),
             rate: TimeSeries::constant(stage.rate),
@@ -407,7 +409,8 @@ impl View<'_, Si> {
             internal: series.internal.map(in_seconds),
         };
         let states = own(&self.state()).map(TimeSeries::constant);
-        basis.sample(load, in_seconds(source_rate), &stage, None, (held, states))
+        let rate = in_seconds(source_rate);
+        basis.sample(&local, load, rate, &stage, None, (held, states))
     }
 }
 

@@ -14,12 +14,7 @@ use crate::solver::limits::Limit;
 impl SiScene {
     /// What can be read in a state.
     pub(super) fn seen_in<'a>(&'a self, time: &'a DoubleDouble, state: &SiState) -> View<'a, Si> {
-        View {
-            scene: self,
-            place: Place::of_state(*time, *state),
-            time,
-            collapse: None,
-        }
+        View::new(self, Place::of_state(*time, *state), time, None)
     }
 
     /// Whether the true field of a state has come to breakdown, but for this part of the breakdown field.
@@ -100,14 +95,18 @@ impl View<'_, Si> {
 
     /// What the quantities are computed with, and the present stage.
     pub(super) fn basis(&self) -> (Basis, Stage) {
-        let state = self.state();
+        self.basis_in(&self.state())
+    }
+
+    /// The same, where the present state is known.
+    pub(super) fn basis_in(&self, state: &SiState) -> (Basis, Stage) {
         let held = self.is_held_at_a_stretch();
         let (origin, position) = match self.place {
             Place::On(motion) if !held => motion.stretch_from_origin(),
             _ => (DoubleDouble::ZERO, state.motion.position),
         };
         let basis = Basis::of(self.scene, self.time, origin);
-        let stage = basis.stage(&state, position);
+        let stage = basis.stage(state, position);
         (basis, stage)
     }
 

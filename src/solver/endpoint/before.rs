@@ -41,8 +41,8 @@ pub struct LastPlan<const K: usize> {
     pub half: f64,
     /// half²·J.
     pub product: f64,
-    /// The rates of the first-order states.
-    pub rates: [f64; K],
+    /// half·r of the first-order states.
+    pub relaxations: [f64; K],
 }
 
 impl<const K: usize> LastStep<K> {
@@ -94,7 +94,7 @@ impl<const K: usize> LastStep<K> {
         for k in 0..K {
             if k < states {
                 let before = &self.internal[k];
-                let slopes = [-last.rates[k], -plans.internal[k].rate];
+                let slopes = [-last.relaxations[k] / last.half, -plans.internal[k].rate];
                 let by = match jump {
                     Some((_, first)) => f64x4::splat(simd, first[k] - before.derivative),
                     None => none,

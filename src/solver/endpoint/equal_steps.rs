@@ -40,7 +40,7 @@ const SPREADS_OFF_ONCE: f64 = 2.0;
 /// Fewer steps do not pay for the matrices of a slope, unless they come again.
 const FEW: f64 = 3.0;
 
-/// The rate of a state is taken anew where it is off by more than this over half the step and this part of it.
+/// The rate of a state, times half the step, is taken anew where it is off by more than this and this part of it.
 const RATE_OFF: f64 = 0.04;
 const PART_OFF: f64 = 0.1;
 
@@ -89,7 +89,7 @@ impl<const K: usize> EndpointSteps<K> {
         let here = in_lanes(simd, &way.state);
         let geometry = local.geometry(here.position);
         let states = local.states();
-        let (mut rates, mut first_slopes) = (self.last_plan.rates, [0.0; K]);
+        let (mut relaxations, mut first_slopes) = (self.last_plan.relaxations, [0.0; K]);
         for k in 0..K {
             if k < states {
                 let slope = local.slope(k, load, &geometry, &here);
@@ -98,8 +98,9 @@ impl<const K: usize> EndpointSteps<K> {
                 if time_scale * rate > FAST_STATE {
                     return Ok(Some(End::Blocked));
                 }
-                if half * (rate - rates[k]).abs() > RATE_OFF + PART_OFF * half * rate {
-                    rates[k] = rate;
+                let relaxation = half * rate;
+                if (relaxation - relaxations[k]).abs() > RATE_OFF + PART_OFF * relaxation {
+                    relaxations[k] = relaxation;
                 }
             }
         }
@@ -118,7 +119,7 @@ impl<const K: usize> EndpointSteps<K> {
         plans.motion.prepare(simd, half, product, frequency);
         for k in 0..K {
             if k < states {
-                plans.internal[k].prepare(simd, half, rates[k]);
+                plans.internal[k].prepare(simd, half, relaxations[k]);
             }
         }
         let plans = &**plans;
@@ -220,7 +221,7 @@ impl<const K: usize> EndpointSteps<K> {
             last = Some((stages, ends));
             taken += 1.0;
             left -= 1.0;
-            let another = self.seen.another_length(length, wanted);
+            let another = self.seen.another_length(length, wanted, count == 1.0);
             self.length = another.or(self.length);
             if left == 0.0 {
                 break Ok(Some(End::Reached));
@@ -246,7 +247,7 @@ impl<const K: usize> EndpointSteps<K> {
             guess.motion = plan.ahead(simd, g, plan.slope * ends.moved);
             for k in 0..K {
                 if k < states {
-                    let shift = -rates[k] * ends.internal[k].moved;
+                    let shift = -plans.internal[k].rate * ends.internal[k].moved;
                     guess.internal[k] = plan.ahead(simd, stages.internal[k].g, shift);
                 }
             }
@@ -274,7 +275,7 @@ impl<const K: usize> EndpointSteps<K> {
         self.last_plan = LastPlan {
             half,
             product,
-            rates,
+            relaxations,
         };
         self.before = Some(before);
         way.state = state;

@@ -65,9 +65,10 @@ impl Seen {
     }
 
     /// After enough steps of this `length`, how long they should be from now on if that is another
-    /// length than is `wanted`, which they have when the way allows it. The first ones grow at once.
+    /// length than is `wanted`, which they have when the way allows it. The first ones grow at once, and one that is
+    /// `alone` between two communication points: longer ways may then need fewer steps, and this one keeps its plan.
     #[inline(always)]
-    pub fn another_length(&mut self, length: f64, wanted: f64) -> Option<f64> {
+    pub fn another_length(&mut self, length: f64, wanted: f64, alone: bool) -> Option<f64> {
         if self.steps < self.due {
             return None;
         }
@@ -77,7 +78,7 @@ impl Seen {
         if next > TOO_SHORT * wanted {
             self.due = due;
             Some(next)
-        } else if next < TOO_LONG * length || due < CALM && next > wanted {
+        } else if next < TOO_LONG * length || (due < CALM || alone) && next > wanted {
             Some(next)
         } else {
             None
@@ -95,7 +96,7 @@ mod tests {
         let step = |seen: &mut Seen, error: f64, length: f64| {
             seen.error = seen.error.max(error);
             seen.steps += 1;
-            seen.another_length(length, length)
+            seen.another_length(length, length, false)
         };
         let mut seen = Seen::BEGIN;
         assert_eq!(step(&mut seen, 1e-20, 1.0), Some(3.0));

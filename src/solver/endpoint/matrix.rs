@@ -86,15 +86,12 @@ fn with_slope_by<S: Simd>(simd: S, slope: f64, matrices: &mut Matrices) {
     end_drift.store_slice(&mut matrices.end_drift);
 }
 
-/// Makes it W·B for steps of half this length, where B integrates once and W = (1 + half·rate·B)⁻¹.
+/// Makes it W·B, where B integrates once over steps whose half is 1 and W = (1 + product·B)⁻¹.
 #[inline(never)]
-pub fn with_relaxation(level: Level, half: f64, rate: f64, matrix: &mut Diagonals) {
+pub fn with_relaxation(level: Level, product: f64, matrix: &mut Diagonals) {
     dispatch!(level, simd => {
         let mut once = [rows(&TABLE.plain.once)];
-        include_slope(simd, -half * rate, &mut once);
-        for row in &mut once[0] {
-            *row = unpair(scaled(pair(simd, row), half));
-        }
+        include_slope(simd, -product, &mut once);
         *matrix = diagonals(&once[0]);
     });
 }

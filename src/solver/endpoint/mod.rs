@@ -100,7 +100,7 @@ impl<const K: usize> EndpointSteps<K> {
             last_plan: LastPlan {
                 half: 0.0,
                 product: 0.0,
-                rates: [0.0; K],
+                relaxations: [0.0; K],
             },
             before: None,
             restarted: false,
@@ -151,12 +151,14 @@ impl<const K: usize> EndpointSteps<K> {
         let LastPlan {
             half,
             product,
-            rates,
+            relaxations,
         } = self.last_plan;
         let positive = |number: f64| number > 0.0 && number.is_finite();
         self.before
             .is_none_or(|before| before.is_valid() && half > 0.0)
-            && rates.iter().all(|rate| (0.0..f64::INFINITY).contains(rate))
+            && relaxations
+                .iter()
+                .all(|part| (0.0..f64::INFINITY).contains(part))
             && (0.0..f64::INFINITY).contains(&half)
             && (-STEEPEST..=0.0).contains(&product)
             && self.length.is_none_or(positive)

@@ -1,12 +1,13 @@
 //! A first-order state over equal steps of 8 nodes.
 //!
 //! As a [`Plan`](super::plan::Plan) does for the position: with g = z' + r·(z − z_0) for a fixed rate r ≈ −∂z'/∂z the
-//! stages solve z = z_0 + half·W·B·g, where W = (1 + half·r·B)⁻¹ and B integrates once.
+//! stages solve z = z_0 + half·W·B·g, where W = (1 + half·r·B)⁻¹ and B integrates once. Steps of another length keep
+//! W·B, with another r.
 
 use fearless_simd::{Simd, SimdBase, f64x4};
 
 use super::matrix::with_relaxation;
-use super::plan::{NODES, Pair, both_permuted, largest, load, multiply, unpair};
+use super::plan::{NODES, Pair, both_permuted, largest, load, multiply, scaled, unpair};
 use super::table::{Diagonals, TABLE};
 use crate::arithmetic::number::Number;
 
@@ -17,7 +18,8 @@ pub struct Relaxation {
     half: f64,
     /// r.
     pub rate: f64,
-    /// half·W·B.
+    /// half·r, NaN where there is none, and W·B.
+    product: f64,
     matrix: Diagonals,
 }
 
@@ -46,15 +48,17 @@ impl Relaxation {
     pub const NONE: Relaxation = Relaxation {
         half: 0.0,
         rate: 0.0,
+        product: f64::NAN,
         matrix: [[[0.0; 4]; 2]; NODES],
     };
 
-    /// Makes it that of steps of this length with this rate.
+    /// Makes it that of steps of this length with this half·r.
     #[inline(always)]
-    pub fn prepare<S: Simd>(&mut self, simd: S, half: f64, rate: f64) {
-        if (half, rate) != (self.half, self.rate) {
-            (self.half, self.rate) = (half, rate);
-            with_relaxation(simd.level(), half, rate, &mut self.matrix);
+    pub fn prepare<S: Simd>(&mut self, simd: S, half: f64, product: f64) {
+        (self.half, self.rate) = (half, product / half);
+        if product != self.product {
+            self.product = product;
+            with_relaxation(simd.level(), product, &mut self.matrix);
         }
     }
 
@@ -62,7 +66,10 @@ impl Relaxation {
     #[inline(always)]
     pub fn displacement<S: Simd>(&self, simd: S, g: Pair<S>) -> Pair<S> {
         let none = [f64x4::splat(simd, 0.0); 2];
-        multiply(simd, &self.matrix, &both_permuted(g), none)
+        scaled(
+            multiply(simd, &self.matrix, &both_permuted(g), none),
+            self.half,
+        )
     }
 
     /// The end of a step with this g and displacement at the nodes.
@@ -103,7 +110,7 @@ mod tests {
             let source = TABLE.place.map(|place| (place - 1.0).powi(5));
             let mut plan = Relaxation::NONE;
             let (z, change) = dispatch!(Level::new(), simd => {
-                plan.prepare(simd, half, rate);
+                plan.prepare(simd, half, half * rate);
                 let g = pair(simd, &source);
                 let z = plan.displacement(simd, g);
                 (unpair(z), plan.end(simd, g, z))
