@@ -88,6 +88,20 @@ static void readings(int count, const char *name)
     for (int i = 0; i < count; ++i) OK(call_fmi2GetReal(component, &known, 1, &value));
 }
 
+/* What a host reads that records everything at each communication point, of the actuator in SI units. */
+static void device_readings(int count)
+{
+    static const char *const names[] = {
+        "lambda", "lambda3", "edge_distance", "edge_velocity", "charge", "supply_current",
+        "capacitance", "membrane_voltage", "electric_field", "electrical_power",
+    };
+    enum { COUNT = sizeof names / sizeof *names };
+    fmi2ValueReference known[COUNT];
+    double values[COUNT];
+    for (int k = 0; k < COUNT; ++k) known[k] = reference(names[k]);
+    for (int i = 0; i < count; ++i) OK(call_fmi2GetReal(component, known, COUNT, values));
+}
+
 static void states(int count)
 {
     fmi2FMUstate state = NULL;
@@ -105,6 +119,7 @@ static void run(const char *pattern, int count)
     else if (!strcmp(pattern, "long_step_dc") || !strcmp(pattern, "long_step_ac")) steps(count, 25.0);
     else if (!strcmp(pattern, "get")) readings(count, "lambda3");
     else if (!strcmp(pattern, "get_threshold")) readings(count, "phi_pull_in");
+    else if (!strcmp(pattern, "device_get")) device_readings(count);
     else if (!strcmp(pattern, "save_restore")) states(count);
     else fail(pattern);
 }
@@ -136,13 +151,17 @@ int main(int argc, char **argv)
     if (!component) fail("fmi2Instantiate");
     OK(call_fmi2SetupExperiment(component, fmi2True, 1e-9, 0.0, fmi2False, 0.0));
     OK(call_fmi2EnterInitializationMode(component));
-    set("gamma_s", 0.05);
-    set("tau_s", 0.05);
-    set("E_s", 0.2);
+    if (strstr(pattern, "device_")) {
+        set("voltage", 500.0);
+    } else {
+        set("gamma_s", 0.05);
+        set("tau_s", 0.05);
+        set("E_s", 0.2);
+    }
     if (strstr(pattern, "_ac")) {
         set("phi_ac", 0.3);
         set("omega_ac", 0.1438);
-    } else {
+    } else if (!strstr(pattern, "device_")) {
         set("phi", 0.5);
     }
     OK(call_fmi2ExitInitializationMode(component));

@@ -35,6 +35,7 @@ COUNTS = {
     "get": 2000,
     "get_threshold": 500,
     "save_restore": 200,
+    "device_get": 500,
 }
 """Calls of each pattern of patterns.c."""
 
@@ -58,17 +59,18 @@ def instructions(tmp_path_factory):
     if not processor.exists() or not {"avx2", "fma"} <= set(processor.read_text().split()):
         pytest.skip("no instructions are counted: the bounds are those of AVX2, which this processor lacks")
     folder = tmp_path_factory.mktemp("patterns")
-    with zipfile.ZipFile(packed_fmu()) as archive:
-        library = archive.extract("binaries/linux64/DielectricElastomerActuator.so", folder)
     program = folder / "patterns"
     headers = Path(fmpy.__file__).parent / "c-code"
     flags = ["-target", "x86_64-linux-gnu.2.17", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{headers}"]
     subprocess.run([*ZIG, "cc", *flags, HERE / "patterns.c", "-o", program, "-ldl"], check=True)
-    description = fmpy.read_model_description(str(packed_fmu()))
-    references = [f"{variable.name}={variable.valueReference}" for variable in description.modelVariables]
 
     def count(pattern: str) -> float:
         calls = COUNTS[pattern]
+        fmu = packed_fmu("si" if pattern.startswith("device_") else "nondimensional")
+        with zipfile.ZipFile(fmu) as archive:
+            library = archive.extract(f"binaries/linux64/{fmu.stem}.so", folder)
+        description = fmpy.read_model_description(str(fmu))
+        references = [f"{variable.name}={variable.valueReference}" for variable in description.modelVariables]
         valgrind = ["valgrind", "--tool=callgrind", "--toggle-collect=measured", f"--callgrind-out-file={folder}/out"]
         command = [*valgrind, program, library, description.guid, pattern, str(calls), *references]
         done = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
