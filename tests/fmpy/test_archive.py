@@ -12,8 +12,9 @@ import linked
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 LARGEST_BINARY = {"fmu_path": 400_000, "si_path": 1_420_000}
-# On Windows the linker adds 40 kB of zig's run-time library, whose functions it cannot leave out one by one.
-MORE = {"win64": 70_000}
+# On Windows the linker adds 40 kB of zig's run-time library, whose functions it cannot leave out one by one, and each
+# function saves more registers: 88 kB in all. That library optimised for size would save 17 kB, and copy memory slower.
+MORE = {"win64": 90_000}
 
 
 @pytest.fixture(scope="module", params=LARGEST_BINARY)

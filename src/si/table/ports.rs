@@ -316,7 +316,7 @@ pub(super) const PORTS: [Row; 26] = [
         "thickness",
         "thickness of the whole stack",
         Output,
-        real(0.0, 10.0, 1e-5),
+        real(0.0, f64::INFINITY, 1e-5),
         formula!(thickness),
         depends(&["lambda"], &["lambda_start", "H", "n_layers"]),
     )
@@ -345,7 +345,7 @@ pub(super) const PORTS: [Row; 26] = [
         "capacitance",
         "capacitance at the present stretch",
         Output,
-        real(0.0, 1.0, 1e-13),
+        real(0.0, f64::INFINITY, 1e-13),
         formula!(capacitance),
         depends(&["lambda"], &["lambda_start", "L", "H", "n_layers", "eps_r", "k1", "k2", "k3"]),
     )

@@ -255,7 +255,7 @@ pub(super) const VALUES: [Row; 34] = [
         "frequency",
         "frequency of small oscillations at the present stretch; 0 where it is unstable",
         Local,
-        real(0.0, 1e12, 1e5),
+        real(0.0, f64::INFINITY, 1e5),
         value(|view| view.small_signal_frequency()),
         UNDECLARED,
     )
