@@ -116,7 +116,7 @@ def sweep(
                     found = heartbeats.result(future)
                 except (Exception, CancelledError) as reason:  # whatever lost one batch, the others go on
                     heartbeats.check()
-                    lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {reason or type(reason).__name__}")
+                    lost.append(f"scenes {numbers[0]} to {numbers[-1]}: {str(reason) or type(reason).__name__}")
                     continue
                 results.add(numbers, rows, found)
                 progress.advance([(k, row["failure"]) for k, row in zip(numbers, found) if row["failure"]], len(found))
@@ -150,8 +150,8 @@ class Heartbeats:
             return self._client.sync(coroutine, *arguments, callback_timeout=self._patience)
         except (OSError, TimeoutError) as reason:
             raise Unfinished(
-                f"the scheduler does not answer ({reason or type(reason).__name__}); what is done is kept, run again "
-                "to go on from there"
+                f"the scheduler does not answer ({str(reason) or type(reason).__name__}); what is done is kept, "
+                "run again to go on from there"
             ) from None
 
     def workers(self) -> int:
@@ -368,7 +368,8 @@ def _client(cluster: str | Cluster | None, workers: int | None, patience: float)
     try:
         yield client
     finally:
-        with suppress(TimeoutError, OSError):  # a lost scheduler says no farewell
+        # A lost scheduler says no farewell, and Dask's client may stumble over that (RuntimeError of asyncio).
+        with suppress(TimeoutError, OSError, RuntimeError):
             client.close(timeout=min(5.0, patience))
 
 

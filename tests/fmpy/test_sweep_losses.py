@@ -108,6 +108,26 @@ def test_a_result_that_cannot_be_fetched_is_given_up():
         engine.Heartbeats(alive, patience=0.4).result(Unreachable())
 
 
+class StumblingClient:
+    """A client whose scheduler is lost, and which fails to close for that."""
+
+    def __init__(self, address, timeout):
+        pass
+
+    def sync(self, coroutine, *arguments, callback_timeout):
+        raise TimeoutError
+
+    def close(self, timeout):
+        raise RuntimeError("Cannot change state of expiring Timeout")
+
+
+def test_a_client_that_cannot_be_closed_does_not_hide_the_reason(monkeypatch, fmu_path, tmp_path):
+    monkeypatch.setattr(engine, "Client", StumblingClient)
+    silent = re.escape("the scheduler does not answer (TimeoutError)")
+    with pytest.raises(engine.Unfinished, match=silent):
+        engine.sweep(slow, grid(phi=[0.1]), tmp_path / "lost.parquet", cluster="tcp://lost", fmu=fmu_path)
+
+
 def test_a_cluster_without_workers_or_scheduler_is_reported(fmu_path, tmp_path):
     def run(address, patience):
         columns, output = grid(phi=[0.1]), tmp_path / "none.parquet"
