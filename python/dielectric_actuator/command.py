@@ -66,7 +66,7 @@ def main(words: Sequence[str] | None = None) -> int:
         print(f"error: {missing}{advice}", file=sys.stderr)
         return 1
     except (MemoryError, OverflowError) as reason:
-        print(f"error: {reason or 'the memory is full'}; ask for fewer steps or scenes", file=sys.stderr)
+        print(f"error: {str(reason) or 'the memory is full'}; ask for fewer steps or scenes", file=sys.stderr)
         return 1
     except (FMICallException, UnknownName, ValueError, OSError, RuntimeError) as reason:
         notes = getattr(reason, "__notes__", [])

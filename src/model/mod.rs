@@ -340,8 +340,8 @@ pub enum Place<'a, M: Model> {
     On(&'a M::Integration),
 }
 
-/// What a host can read at the present communication point. Each quantity is computed when it is
-/// read, and only then; what is computed for several of them, when the first of those is read.
+/// What a host can read in one call at the present communication point. Each quantity is computed when it is
+/// read, and only then. Those that are computed together are kept for the rest of the call.
 pub struct View<'a, M: Model> {
     /// What the host has set.
     pub scene: &'a M::Scene,
@@ -352,7 +352,7 @@ pub struct View<'a, M: Model> {
     /// Whether and when the motion came to a limit.
     pub collapse: Option<&'a Collapse<M::Limit>>,
     /// The quantities that are computed together, once one of them was read.
-    pub sample: OnceCell<M::Sample<f64>>,
+    pub(crate) sample: OnceCell<M::Sample<f64>>,
 }
 
 impl<M: Model> Place<'_, M> {

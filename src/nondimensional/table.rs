@@ -270,7 +270,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
         "phi_pull_in",
         "dynamic pull-in voltage from rest at lambda = 1 for the present S; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| {
             view.dynamic_threshold()
                 .map_or(f64::INFINITY, |t| t.voltage)
@@ -293,7 +293,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
         "phi_pull_in_static",
         "static pull-in voltage for the present S; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.static_threshold().map_or(f64::INFINITY, |t| t.voltage)),
         UNDECLARED,
     )

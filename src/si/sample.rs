@@ -212,9 +212,9 @@ impl<P: Parameter> Basis<P> {
         LocalDevice::new(&self.device, &self.drive, &self.time, &self.origin)
     }
 
-    /// The sample at a stage of `local`, which is [`Basis::local`]. `source_rate` is the derivative of what the source imposes. `charging` is the
-    /// derivative of the charge, where it is known more accurately than from its equation. `states` are the charge
-    /// and the dashpots; those that are states of the stage are taken from there.
+    /// The sample at a stage of `local`, which is [`Basis::local`]. `source_rate` is the derivative of what the source
+    /// imposes. `charging` is the derivative of the charge, where it is known more accurately than from its equation.
+    /// `states` are the charge and the dashpots; those that are states of the stage are taken from there.
     pub fn sample<N: Number>(
         &self,
         local: &LocalDevice<P>,

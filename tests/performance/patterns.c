@@ -58,6 +58,23 @@ static void set(const char *name, double value)
     OK(call_fmi2SetReal(component, &known, 1, &value));
 }
 
+static void set_up(const char *pattern)
+{
+    if (strstr(pattern, "device_")) {
+        set("voltage", 500.0);
+        return;
+    }
+    set("gamma_s", 0.05);
+    set("tau_s", 0.05);
+    set("E_s", 0.2);
+    if (strstr(pattern, "_ac")) {
+        set("phi_ac", 0.3);
+        set("omega_ac", 0.1438);
+    } else {
+        set("phi", 0.5);
+    }
+}
+
 static void step(double length)
 {
     OK(call_fmi2DoStep(component, now, length, fmi2True));
@@ -88,7 +105,7 @@ static void readings(int count, const char *name)
     for (int i = 0; i < count; ++i) OK(call_fmi2GetReal(component, &known, 1, &value));
 }
 
-/* What a host reads that records everything at each communication point, of the actuator in SI units. */
+/* A host that records all of the actuator in SI units reads so much in one call. */
 static void device_readings(int count)
 {
     static const char *const names[] = {
@@ -151,19 +168,7 @@ int main(int argc, char **argv)
     if (!component) fail("fmi2Instantiate");
     OK(call_fmi2SetupExperiment(component, fmi2True, 1e-9, 0.0, fmi2False, 0.0));
     OK(call_fmi2EnterInitializationMode(component));
-    if (strstr(pattern, "device_")) {
-        set("voltage", 500.0);
-    } else {
-        set("gamma_s", 0.05);
-        set("tau_s", 0.05);
-        set("E_s", 0.2);
-    }
-    if (strstr(pattern, "_ac")) {
-        set("phi_ac", 0.3);
-        set("omega_ac", 0.1438);
-    } else if (!strstr(pattern, "device_")) {
-        set("phi", 0.5);
-    }
+    set_up(pattern);
     OK(call_fmi2ExitInitializationMode(component));
     /* The first time round takes what later ones find ready. */
     run(pattern, 10);

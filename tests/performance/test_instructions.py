@@ -5,6 +5,7 @@ the library takes the same way on every processor that has it. `bounds.json` hol
 that takes more than `ALLOWED` of them fails, and `make bless` writes new bounds.
 """
 
+import functools
 import json
 import os
 import re
@@ -64,15 +65,21 @@ def instructions(tmp_path_factory):
     flags = ["-target", "x86_64-linux-gnu.2.17", "-O2", "-Wall", "-Wextra", "-Werror", f"-I{headers}"]
     subprocess.run([*ZIG, "cc", *flags, HERE / "patterns.c", "-o", program, "-ldl"], check=True)
 
-    def count(pattern: str) -> float:
-        calls = COUNTS[pattern]
-        fmu = packed_fmu("si" if pattern.startswith("device_") else "nondimensional")
+    @functools.cache
+    def unpacked(model: str) -> tuple[str, str, list[str]]:
+        fmu = packed_fmu(model)
+        library = f"binaries/linux64/{fmu.stem}.so"
         with zipfile.ZipFile(fmu) as archive:
-            library = Path(archive.extract(f"binaries/linux64/{fmu.stem}.so", folder)).relative_to(folder)
+            archive.extract(library, folder)
         description = fmpy.read_model_description(str(fmu))
         references = [f"{variable.name}={variable.valueReference}" for variable in description.modelVariables]
+        return f"./{library}", description.guid, references
+
+    def count(pattern: str) -> float:
+        calls = COUNTS[pattern]
+        library, guid, references = unpacked("si" if pattern.startswith("device_") else "nondimensional")
         valgrind = ["valgrind", "--tool=callgrind", "--toggle-collect=measured", "--callgrind-out-file=out"]
-        command = [*valgrind, "./patterns", f"./{library}", description.guid, pattern, str(calls), *references]
+        command = [*valgrind, "./patterns", library, guid, pattern, str(calls), *references]
         # Paths of one length: a longer one moves the heap, and copies of memory take other instructions.
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=600, check=False)
         assert done.returncode == 0, done.stderr

@@ -30,8 +30,8 @@ pub const fn real(min: f64, max: f64, nominal: f64) -> Kind {
 }
 
 /// A result that is not negative and has no largest value.
-pub const fn positive() -> Kind {
-    real(0.0, f64::INFINITY, 1.0)
+pub const fn positive(nominal: f64) -> Kind {
+    real(0.0, f64::INFINITY, nominal)
 }
 
 /// A result without limits.

@@ -2,7 +2,7 @@
 
 use super::Row;
 use crate::model::variables::Causality::{Local, Output};
-use crate::model::variables::rows::{depends, formula, real, unlimited};
+use crate::model::variables::rows::{depends, formula, positive, real, unlimited};
 use crate::model::variables::{Dependencies, Terminal, units};
 
 /// The electrical port at a source of voltage.
@@ -316,7 +316,7 @@ pub(super) const PORTS: [Row; 26] = [
         "thickness",
         "thickness of the whole stack",
         Output,
-        real(0.0, f64::INFINITY, 1e-5),
+        positive(1e-5),
         formula!(thickness),
         depends(&["lambda"], &["lambda_start", "H", "n_layers"]),
     )
@@ -345,7 +345,7 @@ pub(super) const PORTS: [Row; 26] = [
         "capacitance",
         "capacitance at the present stretch",
         Output,
-        real(0.0, f64::INFINITY, 1e-13),
+        positive(1e-13),
         formula!(capacitance),
         depends(&["lambda"], &["lambda_start", "L", "H", "n_layers", "eps_r", "k1", "k2", "k3"]),
     )

@@ -161,7 +161,7 @@ pub(super) const VALUES: [Row; 34] = [
         "V_pull_in_static",
         "static pull-in voltage at the present force, branches relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.threshold(PullIn::Static)),
         UNDECLARED,
     )
@@ -171,7 +171,7 @@ pub(super) const VALUES: [Row; 34] = [
         "V_pull_in_dynamic",
         "pull-in voltage of a step from rest at lambda = 1 without losses; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.threshold(PullIn::Dynamic)),
         UNDECLARED,
     )
@@ -181,7 +181,7 @@ pub(super) const VALUES: [Row; 34] = [
         "V_pull_in_from_rest",
         "pull-in voltage of a step from rest with damping and R_s; with Maxwell branches the static one; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.threshold(PullIn::FromRest)),
         UNDECLARED,
     )
@@ -191,7 +191,7 @@ pub(super) const VALUES: [Row; 34] = [
         "V_pull_in_glassy_static",
         "static pull-in voltage of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.threshold(PullIn::GlassyStatic)),
         UNDECLARED,
     )
@@ -201,7 +201,7 @@ pub(super) const VALUES: [Row; 34] = [
         "V_pull_in_glassy_dynamic",
         "pull-in voltage of a step of the actuator whose branches have not relaxed; +inf, which JSON cannot hold, where there is none",
         Local,
-        positive(),
+        positive(1.0),
         value(|view| view.threshold(PullIn::GlassyDynamic)),
         UNDECLARED,
     )
@@ -255,7 +255,7 @@ pub(super) const VALUES: [Row; 34] = [
         "frequency",
         "frequency of small oscillations at the present stretch; 0 where it is unstable",
         Local,
-        real(0.0, f64::INFINITY, 1e5),
+        positive(1e5),
         value(|view| view.small_signal_frequency()),
         UNDECLARED,
     )

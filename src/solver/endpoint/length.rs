@@ -109,4 +109,17 @@ mod tests {
         }
         assert_eq!(step(&mut seen, 1e-20, grown), Some(3.0 * grown));
     }
+
+    /// Where ways of another length come between.
+    #[test]
+    fn a_step_that_is_alone_grows_by_less_than_twice() {
+        for alone in [false, true] {
+            let mut seen = Seen {
+                steps: CALM,
+                ..Seen::NOTHING
+            };
+            let grown = alone.then_some(3.0);
+            assert_eq!(seen.another_length(1.0, 2.0, alone), grown);
+        }
+    }
 }
