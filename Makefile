@@ -21,6 +21,8 @@ MOSAIK_INSTALLED := $(VENV)/installed-mosaik
 # What is never imported need not be compiled: each module is, when it is imported for the first time.
 unexport PYTHONDONTWRITEBYTECODE
 PIP_INSTALL = $(PYTHON) -m pip --python $(PYTHON_IN_VENV) install --no-compile
+# uv takes a quarter of pip's time. It reads no settings of pip: where they are needed, pip installs.
+install = $(BIN)/uv pip install --python $(PYTHON_IN_VENV) $(1) || $(PIP_INSTALL) $(1)
 
 # The crate `fmi` needs libclang and the C headers to generate its bindings, and the packager
 # needs zig to link. Expanded when a recipe runs, hence after the set-up.
@@ -298,11 +300,11 @@ test-mosaik: fmu $(TESTS_INSTALLED) $(MOSAIK_INSTALLED) $(PACKAGE_INSTALLED)
 
 stress: $(TESTS_INSTALLED)
 	$(call heading,Stress tests)
-	@STRESS=long $(NEXTEST) run --profile long --test stress
+	@STRESS=long $(NEXTEST) run --profile long --test behaviour stress::
 
 soak: fmu $(TESTS_INSTALLED) $(HOSTS_INSTALLED) $(PACKAGE_INSTALLED)
 	$(call heading,Random calls)
-	@SOAK=long $(NEXTEST) run --profile long --test calls random::
+	@SOAK=long $(NEXTEST) run --profile long --test behaviour calls::random::
 	$(call heading,Memory and races)
 	@SOAK=long $(PYTEST) -rA --timeout 7200 tests/hosts/test_soak.py
 	@$(MAKE) --no-print-directory fuzz
@@ -349,7 +351,8 @@ $(INSTALLED): requirements.txt
 	{ echo 'error: $(PYTHON) has no pip; install it (Debian: apt install python3-pip)'; exit 1; }
 	@[ ! -L $(VENV) ] || { echo 'error: $(VENV) is a link to an environment that would be emptied; remove the link'; exit 1; }
 	$(PYTHON) -m venv --clear --without-pip $(VENV)
-	$(PIP_INSTALL) --requirement requirements.txt
+	$(PIP_INSTALL) --quiet $$(sed -n '/^uv==/p' requirements.txt)
+	$(call install,--requirement requirements.txt)
 	@touch $@
 
 # npm, which comes with node, checks the hash of each package against page/package-lock.json.
@@ -362,47 +365,47 @@ $(NODE_INSTALLED): page/package.json page/package-lock.json | $(INSTALLED)
 
 $(PAGE_TESTS_INSTALLED): tests/page/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the tests of the live page)
-	$(PIP_INSTALL) --requirement tests/page/requirements.txt
+	$(call install,--requirement tests/page/requirements.txt)
 	@touch $@
 
 $(HOSTS_INSTALLED): tests/hosts/requirements.txt tests/hosts/requirements-cofmupy.txt $(INSTALLED)
 	$(call heading,Python packages of other hosts)
-	$(PIP_INSTALL) --requirement tests/hosts/requirements.txt
-	$(PIP_INSTALL) --no-deps --upgrade --target $(VENV)/cofmupy \
-	--requirement tests/hosts/requirements-cofmupy.txt
+	$(call install,--requirement tests/hosts/requirements.txt)
+	$(call install,--no-deps --upgrade --target $(VENV)/cofmupy \
+	--requirement tests/hosts/requirements-cofmupy.txt)
 	@touch $@
 
 $(MOSAIK_INSTALLED): $(wildcard tests/mosaik/*requirements.txt) tests/mosaik/build_fmipp.py $(INSTALLED)
 	$(call heading,mosaik-fmi and fmipp)
-	$(PIP_INSTALL) --requirement tests/mosaik/build-requirements.txt
-	$(PIP_INSTALL) --no-deps --upgrade --target $(VENV)/mosaik \
-	--requirement tests/mosaik/requirements.txt
+	$(call install,--requirement tests/mosaik/build-requirements.txt)
+	$(call install,--no-deps --upgrade --target $(VENV)/mosaik \
+	--requirement tests/mosaik/requirements.txt)
 	$(PYTHON) tests/mosaik/build_fmipp.py $(PYTHON_IN_VENV) $(VENV)/mosaik
 	@touch $@
 
 # The Python package as it stands in the checkout, with the FMU of target/fmu.
 $(PACKAGE_INSTALLED): python/requirements.txt python/pyproject.toml $(INSTALLED)
 	$(call heading,Python package)
-	$(PIP_INSTALL) --requirement python/requirements.txt
-	$(PIP_INSTALL) --no-deps --no-build-isolation --editable python
+	$(call install,--requirement python/requirements.txt)
+	$(call install,--no-deps --no-build-isolation --editable python)
 	@touch $@
 
 $(BENCHMARK_INSTALLED): benchmark/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the benchmark)
-	$(PIP_INSTALL) --requirement benchmark/requirements.txt
+	$(call install,--requirement benchmark/requirements.txt)
 	@touch $@
 
 $(EXAMPLES_INSTALLED): examples/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the examples)
-	$(PIP_INSTALL) --requirement examples/requirements.txt
+	$(call install,--requirement examples/requirements.txt)
 	@touch $@
 
 $(RELEASE_INSTALLED): packaging/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of a release)
-	$(PIP_INSTALL) --requirement packaging/requirements.txt
+	$(call install,--requirement packaging/requirements.txt)
 	@touch $@
 
 $(TESTS_INSTALLED): tests/requirements.txt $(INSTALLED)
 	$(call heading,Python packages of the tests)
-	$(PIP_INSTALL) --requirement tests/requirements.txt
+	$(call install,--requirement tests/requirements.txt)
 	@touch $@

@@ -18,7 +18,7 @@ use dielectric_elastomer_actuator::model::variables::Kind;
 use dielectric_elastomer_actuator::si::Si;
 
 /// The test below that plays in another process.
-const PLAYER: &str = "random::plays_for_the_tests";
+const PLAYER: &str = "calls::random::plays_for_the_tests";
 
 /// Set in that process: the identifier of the model.
 const ROLE: &str = "DEA_TEST_ROLE";

@@ -23,10 +23,6 @@ impl<M: Method> From<Integrator<M>> for Clocked<M> {
     }
 }
 
-#[allow(
-    dead_code,
-    reason = "a test follows motions of one kind, or asks for less"
-)]
 impl<M: Method> Clocked<M> {
     /// A motion that has come to this time.
     pub fn at(clock: DoubleDouble, motion: Integrator<M>) -> Clocked<M> {
@@ -39,14 +35,12 @@ impl<M: Method> Clocked<M> {
     }
 }
 
-#[allow(dead_code, reason = "a test follows motions of one kind")]
 impl Clocked<Steps> {
     pub fn advance<E: Equation>(&mut self, equation: &E, step: f64) -> Result<Progress, Failure> {
         self.motion.advance(equation, &mut self.clock, step)
     }
 }
 
-#[allow(dead_code, reason = "a test follows motions of one kind")]
 impl Clocked<Carried> {
     pub fn advance<E: CoupledEquation>(
         &mut self,

@@ -2,8 +2,8 @@
 
 use std::cell::Cell;
 
+use super::scene::{Present, start};
 use crate::clocked::Clocked;
-use crate::scene::{Present, start};
 use dielectric_elastomer_actuator::actuator::device::{
     Branch, Damping, Device, DeviceMotion, Elasticity, Locking, Permittivity, Port, Source, Spring,
 };

@@ -1,8 +1,8 @@
 //! A damped actuator is followed by the integrator of the paper's equation.
 
+use super::scene::{LIMITS, Scene, follow, number, read, start};
 use crate::clocked::Clocked;
 use crate::largest::largest;
-use crate::scene::{LIMITS, Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::{Damping, Device, DeviceMotion};
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;

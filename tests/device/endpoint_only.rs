@@ -2,9 +2,9 @@
 
 use std::cell::Cell;
 
-use crate::balance::{MOST_OF_THEM, device, drive, is_pulled_in, off_or, scales, thousand};
+use super::balance::{MOST_OF_THEM, device, drive, is_pulled_in, off_or, scales, thousand};
+use super::scene::{Scene, follow, number, read, start};
 use crate::largest::largest;
-use crate::scene::{Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::device::DeviceMotion;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;

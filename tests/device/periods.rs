@@ -1,6 +1,6 @@
 //! Exact periods and turning points of undamped scenes under constant inputs.
 
-use crate::scene::{Scene, follow, number, read, start};
+use super::scene::{Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 
 /// After whole periods the actuator stands at λ = 1 again, after half a period at the turn.

@@ -1,7 +1,7 @@
 //! What is off costs nothing and changes nothing: the device is then the paper's actuator.
 
+use super::scene::{LIMITS, follow, start};
 use crate::clocked::Clocked;
-use crate::scene::{LIMITS, follow, start};
 use dielectric_elastomer_actuator::actuator::device::{Device, DeviceMotion, Spring};
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};

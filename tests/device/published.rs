@@ -1,6 +1,6 @@
 //! What others have published, and closed forms.
 
-use crate::scene::{Present, follow, start};
+use super::scene::{Present, follow, start};
 use dielectric_elastomer_actuator::actuator::Drive;
 use dielectric_elastomer_actuator::actuator::Parameters;
 use dielectric_elastomer_actuator::actuator::device::equation::Load;

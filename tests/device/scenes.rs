@@ -1,6 +1,6 @@
 //! Each reference scene, at times that are no ends of our steps.
 
-use crate::scene::{Present, Scene, follow, number, read, start};
+use super::scene::{Present, Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 
 /// The largest errors of a scene: of the stretch, of the rate (in units of its largest value),

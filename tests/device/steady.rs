@@ -1,6 +1,6 @@
 //! The periodic state of a damped actuator under an alternating voltage.
 
-use crate::scene::{Scene, follow, number, read, start};
+use super::scene::{Scene, follow, number, read, start};
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use std::f64::consts::TAU;
 

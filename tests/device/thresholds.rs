@@ -1,7 +1,7 @@
 //! Pull-in thresholds of real actuators.
 
+use super::scene::{number, read};
 use crate::clocked::Clocked;
-use crate::scene::{number, read};
 use dielectric_elastomer_actuator::actuator::device::{
     Branch, Device, DeviceMotion, Elasticity, Locking, Source, Spring,
 };

@@ -1,7 +1,7 @@
 //! What a host does with a motion: saves it, changes its inputs, awaits events.
 
+use super::scene::{LIMITS, Scene, follow, number, read, start, start_between};
 use crate::clocked::Clocked;
-use crate::scene::{LIMITS, Scene, follow, number, read, start, start_between};
 use dielectric_elastomer_actuator::actuator::device::{Breakdown, DeviceMotion};
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::solver::coupled::trajectory::Carried;

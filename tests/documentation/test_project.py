@@ -1,6 +1,7 @@
 """What is said about the project as a whole is said in one way: citation, versions, lints."""
 
 import re
+import subprocess
 import tomllib
 from pathlib import Path
 
@@ -57,6 +58,18 @@ def test_every_crate_has_the_lints_of_the_workspace(path):
     lints = manifest(path)["lints"]
     # The benchmark and the fuzzer are workspaces of their own and cannot refer to this one.
     assert lints == {"workspace": True} or lints == wanted
+
+
+def test_packager_and_tests_share_one_build_of_the_actuator():
+    def crates(*selection: str) -> set[str]:
+        """Each crate with its features."""
+        words = ["cargo", "tree", "--locked", "--prefix", "none", "--format", "{p} {f}", *selection]
+        lines = subprocess.run(words, cwd=REPOSITORY, check=True, capture_output=True, text=True).stdout
+        return {line.removesuffix(" (*)") for line in lines.splitlines()}
+
+    of_the_packager = crates("--package", "packaging", "--edges", "normal,build")
+    assert len(of_the_packager) > 50
+    assert of_the_packager <= crates("--workspace", "--edges", "normal,build,dev")
 
 
 def test_the_tables_of_performance_are_those_of_the_newest_record(monkeypatch):

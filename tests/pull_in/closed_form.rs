@@ -1,7 +1,7 @@
 //! Cases that can be solved by hand.
 
-use crate::case::Case;
-use crate::{ROUNDING_ERROR, assert_rounded, assert_within};
+use super::case::Case;
+use super::{ROUNDING_ERROR, assert_rounded, assert_within};
 
 #[test]
 fn ideal_actuator() {

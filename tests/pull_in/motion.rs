@@ -1,7 +1,7 @@
 //! Thresholds against the motion itself, by an integrator of its own.
 
-use crate::assert_rounded;
-use crate::case::{Case, stretch};
+use super::assert_rounded;
+use super::case::{Case, stretch};
 
 /// Whether the motion from rest at λ = 1 reaches `stretch` before it turns
 /// back: the classical Runge-Kutta method on Eq. 16. The step is below 1/1000

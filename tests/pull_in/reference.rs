@@ -1,7 +1,7 @@
 //! The multiprecision values in `tests/reference/thresholds_periods.json`.
 
-use crate::case::Case;
-use crate::{ROUNDING_ERROR, assert_within};
+use super::case::Case;
+use super::{ROUNDING_ERROR, assert_within};
 use serde_json::Value;
 
 fn rows(table: &str, count: usize) -> Vec<Value> {

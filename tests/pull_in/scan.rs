@@ -1,8 +1,8 @@
 //! Thresholds against a slow scan of the curves, and properties, on random
 //! parameters far beyond the paper's γ, τ ≤ 0.1, E ≤ 0.4, S ≤ 0.5.
 
-use crate::ROUNDING_ERROR;
-use crate::case::{Case, stretch};
+use super::ROUNDING_ERROR;
+use super::case::{Case, stretch};
 use dielectric_elastomer_actuator::pull_in::Threshold;
 use proptest::prelude::*;
 

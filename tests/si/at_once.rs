@@ -1,7 +1,7 @@
 //! What is read between a change and the next step is that of the present.
 
-use crate::host::Host;
-use crate::motion::{gain, stored};
+use super::host::Host;
+use super::motion::{gain, stored};
 
 /// Current and charge behind a resistance.
 #[test]

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::host::{Host, RICH};
+use super::host::{Host, RICH};
 use dielectric_elastomer_actuator::instance::Interface;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{

@@ -1,6 +1,6 @@
 //! Directional derivatives by inputs, states and parameters.
 
-use crate::host::{Host, RICH, row};
+use super::host::{Host, RICH, row};
 use dielectric_elastomer_actuator::instance::Interface;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{Access, Kind, Meant};

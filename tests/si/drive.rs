@@ -1,6 +1,6 @@
 //! The built-in alternating voltage.
 
-use crate::host::Host;
+use super::host::Host;
 use dielectric_elastomer_actuator::instance::Interface;
 
 /// A built-in voltage of frequency 0 adds its sine, in steps of all kinds.

@@ -1,7 +1,7 @@
 //! Model exchange against co-simulation, and what only model exchange has.
 
-use crate::host::{Host, row};
-use crate::integrator::{Integrator, STATES};
+use super::host::{Host, row};
+use super::integrator::{Integrator, STATES};
 use dielectric_elastomer_actuator::instance::Interface;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::si::Si;

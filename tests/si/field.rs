@@ -1,6 +1,6 @@
 //! What follows from the field: the leak and breakdown.
 
-use crate::host::Host;
+use super::host::Host;
 
 /// A film without surface effects and without a constant voltage.
 const BARE: [(&str, f64); 5] = [

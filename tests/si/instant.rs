@@ -1,7 +1,7 @@
 //! Several changes at one instant: what follows depends neither on their order nor on the kind of FMU.
 
-use crate::host::Host;
-use crate::integrator::Integrator;
+use super::host::Host;
+use super::integrator::Integrator;
 
 type Change = (&'static str, f64);
 

@@ -1,6 +1,6 @@
 //! Model exchange: a host that integrates by the classical Runge–Kutta method.
 
-use crate::host::Host;
+use super::host::Host;
 use dielectric_elastomer_actuator::instance::Interface;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::si::Si;

@@ -1,6 +1,6 @@
 //! The motion by the variables of the table.
 
-use crate::host::{Host, row};
+use super::host::{Host, row};
 use dielectric_elastomer_actuator::instance::Saved;
 use serde_json::Value;
 

@@ -1,6 +1,6 @@
 //! Results that lead beyond the largest number: the law σ exp(E/E_c) of the conductivity does, in a field far above E_c.
 
-use crate::host::{Host, row};
+use super::host::{Host, row};
 use dielectric_elastomer_actuator::instance::{Fault, Interface, Saved, Severity, Type};
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::Kind;

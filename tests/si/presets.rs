@@ -1,6 +1,6 @@
 //! The presets in SI units: each sets variables of the table, and its device moves.
 
-use crate::host::Host;
+use super::host::Host;
 use serde_json::Value;
 use std::fs;
 

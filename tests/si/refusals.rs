@@ -1,6 +1,6 @@
 //! What cannot be meant is refused with the variable, the value, the limit and what to do.
 
-use crate::host::{Host, row};
+use super::host::{Host, row};
 use dielectric_elastomer_actuator::instance::{Interface, Saved, Type};
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::model::variables::{Access, Kind, Meant};

@@ -1,6 +1,6 @@
 //! Both models give one trajectory after scaling, to rounding.
 
-use crate::host::Host;
+use super::host::Host;
 use dielectric_elastomer_actuator::actuator::scales::{Scales, SiDevice};
 use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional;

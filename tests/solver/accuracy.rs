@@ -4,8 +4,8 @@ use dielectric_elastomer_actuator::actuator::motion::{Load, energy};
 use dielectric_elastomer_actuator::solver::trajectory::Failure;
 use proptest::prelude::*;
 
-use super::largest::largest;
 use super::*;
+use crate::largest::largest;
 
 /// Rows t, λ, dλ/dt of a reference with 30 digits.
 fn reference(name: &str) -> Vec<[f64; 3]> {

@@ -11,9 +11,9 @@ use std::fs::read_to_string;
 use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::nondimensional::{Instance, value_reference};
 
+use super::doubled::Doubled;
 use super::scenes::{KINDS, Kind, Scene};
 use super::*;
-use crate::doubled::Doubled;
 
 /// Stretches in which a motion is compared.
 const COMPARED: std::ops::RangeInclusive<f64> = 0.15..=8.0;

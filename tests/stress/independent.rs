@@ -8,7 +8,7 @@
 
 use std::ops::{Add, Div, Mul, RangeInclusive, Sub};
 
-use crate::doubled::Doubled;
+use super::doubled::Doubled;
 
 /// Most terms of a series.
 const TERMS: usize = 34;

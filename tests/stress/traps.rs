@@ -4,9 +4,9 @@ use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::limits::{Limit, Limits};
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Trajectory};
 
+use super::independent::{Actuator, Load};
+use super::{advance, alternating, assert_at_most, from_rest, motion};
 use crate::clocked::Clocked;
-use crate::independent::{Actuator, Load};
-use crate::{advance, alternating, assert_at_most, from_rest, motion};
 
 /// A voltage that alternates many times within a natural period acts by its
 /// mean square; the ripple is below 1e-8 here.
@@ -88,7 +88,7 @@ fn a_fast_contraction_bounces_off_the_elastic_barrier() {
                 position: 1.0,
                 rate: -rate,
             };
-            let mut trajectory = Clocked::from(Trajectory::new(start, crate::WIDE, tolerance));
+            let mut trajectory = Clocked::from(Trajectory::new(start, super::WIDE, tolerance));
             advance(&mut trajectory, &motion, 1.5 / rate);
             assert!(trajectory.rate() > 0.0, "c = {aspect:e}, {tolerance:e}");
         }

@@ -1,9 +1,7 @@
 //! Derivatives of the motion by its parameters against difference quotients of a plain
 //! trajectory, and against a redundancy of the equation that is exact.
 
-mod clocked;
-
-use clocked::Clocked;
+use crate::clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Polynomial;
 use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::sensitivity::{

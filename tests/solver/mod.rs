@@ -2,16 +2,12 @@
 //! what must hold exactly.
 
 mod accuracy;
-#[path = "../clocked/mod.rs"]
-mod clocked;
 mod extremes;
-#[path = "../largest/mod.rs"]
-mod largest;
 mod limits;
 mod rest;
 mod stored;
 
-use clocked::Clocked;
+use crate::clocked::Clocked;
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::limits::Limits;

@@ -1,16 +1,13 @@
 //! What a scene does not need is skipped, and no result changes by it.
 //!
 //! Beside these: orbits, splitting of steps, saved states and extremes in
-//! `solver`, rest and sequences of inputs in `stress`, lanes in `sweep.rs`.
+//! `solver`, rest and sequences of inputs in `stress`, lanes in `sweep`.
 
-#[path = "largest/mod.rs"]
-mod largest;
-
+use crate::largest::largest;
 use dielectric_elastomer_actuator::instance::Type;
 use dielectric_elastomer_actuator::model::variables::Kind;
 use dielectric_elastomer_actuator::nondimensional::Instance;
 use dielectric_elastomer_actuator::nondimensional::{VARIABLES, value_reference};
-use largest::largest;
 
 const STEP: f64 = 0.37;
 const STEPS: u32 = 400;

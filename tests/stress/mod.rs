@@ -7,33 +7,27 @@
 
 mod accuracy;
 mod allowed;
-#[path = "../clocked/mod.rs"]
-mod clocked;
 mod doubled;
 mod escape;
 mod fold;
 mod independent;
 mod inputs;
 mod instance;
-#[path = "../largest/mod.rs"]
-mod largest;
 mod levels;
-#[path = "../processor_time/mod.rs"]
-mod processor_time;
 mod ranges;
 mod scenes;
 mod steps;
 mod traps;
 mod varying;
 
-use clocked::Clocked;
+use crate::clocked::Clocked;
+use crate::largest::largest;
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
 use dielectric_elastomer_actuator::solver::limits::Limits;
 use dielectric_elastomer_actuator::solver::trajectory::{Progress, Steps, Trajectory};
 use independent::{Actuator, Load, Taylor};
-use largest::largest;
 
 const REST: State = State {
     position: 1.0,

@@ -1,8 +1,6 @@
 //! Many scenes at once against the same scenes one by one.
 
-#[path = "largest/mod.rs"]
-mod largest;
-
+use crate::largest::largest;
 use dielectric_elastomer_actuator::actuator::Ensemble;
 use dielectric_elastomer_actuator::arithmetic::double_double::DoubleDouble;
 use dielectric_elastomer_actuator::ensemble::{self, InitialValueProblem};
@@ -10,7 +8,6 @@ use dielectric_elastomer_actuator::nondimensional::scene::Scene;
 use dielectric_elastomer_actuator::solver::limits::Limit;
 use dielectric_elastomer_actuator::sweep::{Outcome, follow, follow_one};
 use fearless_simd::Level;
-use largest::largest;
 use nalgebra::{Matrix2, Vector2};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;

@@ -13,8 +13,6 @@ mod exchange;
 mod extremes;
 mod host;
 mod masters;
-#[path = "../processor_time/mod.rs"]
-mod processor_time;
 mod random;
 mod refusals;
 mod runs;
