@@ -351,7 +351,7 @@ pub static VARIABLES: [Row; COUNT] = checked([
     .at_events(),
     Row::parameter(
         "terminate_on_pull_in",
-        "on_pull_in for hosts that set numbers only: 0 leaves it to on_pull_in, any other value is terminate",
+        "on_pull_in for hosts that set numbers only: 0 leaves it to on_pull_in, 1 is terminate",
         Fixed,
         real(0.0, 1.0, 1.0),
         0.0,
