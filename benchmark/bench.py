@@ -124,6 +124,8 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
     """Raw rows: free-running, in communication steps, with something skipped or not, many scenes."""
     free, steps, skips, ensembles = [], [], [], []
     names = options.cases.split(",")
+    if unknown := {*names} - {case.name for case in ALL_CASES}:
+        raise SystemExit(f"there is no case {', '.join(sorted(unknown))}")
     cases = [case for case in ALL_CASES if case.name in names]
     for number in range(1, options.rounds + 1):
         for case in cases:
@@ -148,9 +150,14 @@ def main() -> None:
         rivals = Rivals(options.program, options.fmu, Path(folder), options.van_der_pol)
         for name, reason in rivals.missing.items():
             print(f"missing: {name}: {reason}")
+        if whole and rivals.heyoka is None and options.records is None:
+            raise SystemExit("without heyoka there is no record: name another folder with --records")
         facts = records.machine()
         free, steps, skips, ensembles = measure(options, rivals)
     facts |= settings(options, rivals)
+    for row in free + steps:
+        if row["method"].startswith("ours") and row["note"].startswith("not timed"):
+            raise SystemExit(f"case {row['case']}, {row['method']}, tolerance {row['tolerance']}: {row['note']}")
 
     target = records.folder(facts, options.records)
     best_free, best_steps = records.fastest(free), records.fastest(steps)
@@ -178,7 +185,7 @@ def main() -> None:
     about = "\n".join(f"* {name}: {value}" for name, value in facts.items())
     tables = target / "tables.md"
     tables.write_text(f"# Benchmark\n\n{about}\n\n{text}")
-    if whole and rivals.heyoka is not None and options.records is None:
+    if whole and options.records is None:
         page.PAGE.write_text(page.renewed(page.PAGE.read_text(), target))
         written.append(page.PAGE)
     print("\n" + text)

@@ -7,8 +7,9 @@
  * the scales from them to SI units. Errors of rate and charge are over their largest values.
  *
  * CVODE with Adams and fixed-point iteration; CVODE with BDF, and ARKODE with the L-stable method of Kvaerno of order
- * 5, with Newton and a dense matrix. Relative and absolute tolerance are the same number; the absolute one of the
- * charge is scaled by its largest value.
+ * 5, with Newton and a dense matrix. Relative and absolute tolerance are the same number; the absolute ones of rate and
+ * charge are scaled by their largest values. Kvaerno's method ends a step at each row: its interpolation is less exact
+ * than its steps where RC is small. There its stages must be solved more exactly than by default.
  */
 #include <dlfcn.h>
 #include <math.h>
@@ -29,6 +30,7 @@
 
 enum { MOST_ROWS = 100, MOST_STATES = 6, MOST_START = 60, MOST_STEPS = 3000000 };
 static const double LOST = 0.1, LONGEST = 3; /* an error of another motion; seconds that end a method */
+static const double SMALL_RC = 1e-2;
 
 static struct {
     double c, linear, cubic, quintic, phi, eta, r, m[3], tau[3];
@@ -106,6 +108,11 @@ static int by_sundials(enum method method, double tolerance)
         ARKStepSVtolerances(solver, tolerance, absolute);
         ARKStepSetMaxNumSteps(solver, MOST_STEPS);
         ARKStepSetLinearSolver(solver, dense, matrix);
+        ARKStepSetDeduceImplicitRhs(solver, 1);
+        if (device.r > 0 && device.r < SMALL_RC) {
+            ARKStepSetNonlinConvCoef(solver, 1e-3);
+            ARKStepSetMaxNonlinIters(solver, 10);
+        }
     } else {
         solver = CVodeCreate(method == BDF ? CV_BDF : CV_ADAMS, context);
         CVodeInit(solver, right_hand_side, 0, state);
@@ -119,6 +126,8 @@ static int by_sundials(enum method method, double tolerance)
     int done = 1;
     double t, begin = now();
     for (int row = 0; row < rows && done; row++) {
+        if (method == KVAERNO)
+            ARKStepSetStopTime(solver, times[row]);
         done = method == KVAERNO ? ARKStepEvolve(solver, times[row], state, &t, ARK_NORMAL) >= 0
                                  : CVode(solver, times[row], state, &t, CV_NORMAL) >= 0;
         double stretch = NV_Ith_S(state, 0);
@@ -211,6 +220,8 @@ static void measure(enum method method)
             continue;
         }
         double found = error();
+        if (method == OURS && found > 10 * tolerance + 1e-12)
+            fprintf(stderr, "the FMU misses %g at the tolerance %g\n", found, tolerance), exit(3);
         for (int k = 0; k < (single > LONGEST ? 0 : BATCHES); k++) {
             long runs = 0;
             double passed;

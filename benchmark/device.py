@@ -259,6 +259,8 @@ def main() -> None:
     whole = options.scenes == ",".join(DEVICE_SCENES)
     if not whole and (options.records is None or options.figure == FIGURE):
         parser.error("a part of the scenes does not make the record: name another place with --records and --figure")
+    if unknown := {*options.scenes.split(",")} - {*DEVICE_SCENES}:
+        parser.error(f"there is no scene {', '.join(sorted(unknown))}")
     facts = records.machine()
     heyoka = Heyoka()
     raw: list[dict] = []

@@ -2,7 +2,8 @@
 
     python benchmark/page.py [FOLDER OF A RECORD]
 
-Without a folder the newest record is taken. Each table of the page is known by its first line. `make bench` calls this.
+Without a folder each table is made from the newest record that has its numbers. Each table of the page is known by its
+first line. `make bench` and `make bench-device` call this.
 """
 
 from __future__ import annotations
@@ -38,9 +39,9 @@ CALLS = {
 """Rows of the page, and inputs and tolerance in the record."""
 
 
-def newest_record() -> Path:
-    """The folder of the newest record."""
-    return max((HERE / "records").glob("*/*"), key=lambda folder: folder.name)
+def newest(name: str, processor: str = "*") -> Path:
+    """The file of this name in the newest record that has one, of one processor or of all."""
+    return max((HERE / "records").glob(f"{processor}/*/{name}"), key=lambda file: file.parent.name)
 
 
 def against_heyoka(rows: list[dict]) -> str:
@@ -94,8 +95,9 @@ def processors() -> str:
     """The packed FMU against heyoka, and an ensemble against single scenes, in each processor's newest record."""
     lines = []
     names = ["d", "e", *(case.name for case in random_cases())]
-    for folder in sorted((HERE / "records").iterdir(), reverse=True):
-        record = max(folder.glob("*"))
+    known = {file.parents[1].name for file in (HERE / "records").glob("*/*/ensemble.csv")}
+    for processor in sorted(known, reverse=True):
+        record = newest("ensemble.csv", processor).parent
         facts, rows = read(record / "work_precision.csv")
         _, scenes = read(record / "ensemble.csv")
         for level in LEVELS:
@@ -108,10 +110,10 @@ def processors() -> str:
                 )
                 for method in ("ours, ensemble", "ours, one by one")
             )
-            processor = f"{facts['processor']}, {facts['family and model']} ({facts['SIMD'].split()[0]}), {record.name}"
+            about = f"{facts['processor']}, {facts['family and model']} ({facts['SIMD'].split()[0]}), {record.name}"
             lines.append(
                 [
-                    processor if level == LEVELS[0] else "",
+                    about if level == LEVELS[0] else "",
                     f"{level:g}",
                     *(times(one) for one in ratios[:2]),
                     *with_summary(ratios[2:])[-2:],
@@ -122,8 +124,8 @@ def processors() -> str:
     return markdown(heads, lines)
 
 
-def tables(record: Path) -> list[str]:
-    """All tables of the page that the record gives, and the one of all processors."""
+def tables(record: Path | None) -> list[str]:
+    """All tables of the page that the record gives, or the newest ones, and the one of all processors."""
     made = {
         "work_precision.csv": (against_heyoka, random_sets),
         "ensemble.csv": (ensemble_table,),
@@ -131,12 +133,17 @@ def tables(record: Path) -> list[str]:
         "skips.csv": (skip_table,),
         "device.csv": (device_table,),
     }
-    of_record = [table(read(record / name)[1]) for name, makers in made.items() for table in makers]
-    return [*of_record, processors()]
+    texts = []
+    for name, makers in made.items():
+        file = record / name if record else newest(name)
+        if file.is_file():
+            _, rows = read(file)
+            texts += [table(rows) for table in makers]
+    return [*texts, processors()]
 
 
-def renewed(text: str, record: Path) -> str:
-    """The page's text with the tables of this record."""
+def renewed(text: str, record: Path | None = None) -> str:
+    """The page's text with the tables of this record, or of the newest ones."""
     for table in tables(record):
         head = table.splitlines()[0]
         before, found, rest = text.partition(f"{head}\n")
@@ -148,5 +155,4 @@ def renewed(text: str, record: Path) -> str:
 
 
 if __name__ == "__main__":
-    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else newest_record()
-    PAGE.write_text(renewed(PAGE.read_text(), folder))
+    PAGE.write_text(renewed(PAGE.read_text(), Path(sys.argv[1]) if len(sys.argv) > 1 else None))

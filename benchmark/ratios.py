@@ -54,7 +54,7 @@ def times(ratio: float) -> str:
 
 def with_summary(ratios: list[float]) -> list[str]:
     """Ratios as cells, and the median and the least of those that are known."""
-    known = [ratio for ratio in ratios if not math.isnan(ratio)]
+    known = [ratio for ratio in ratios if not math.isnan(ratio)] or [math.nan]
     return [times(ratio) for ratio in (*ratios, statistics.median(known), min(known))]
 
 

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Row:
-    """One number: what it is, the paper's entry as printed (None: the paper gives none), exact, and measured."""
+    """One number: what it is, the paper's entry as printed (None: the paper gives none), exact, and measured.
+
+    Raises ValueError where the two cannot be compared: NaN would be left out of the largest difference."""
 
     quantity: str
     printed: str | None
     exact: float
     measured: float
+
+    def __post_init__(self):
+        if math.isnan(self.difference):
+            raise ValueError(f"{self.quantity}: {self.measured} cannot be compared with {self.exact}")
 
     @property
     def difference(self) -> float:

@@ -39,7 +39,8 @@ def test_memory_stays_flat(host, what, count):
     curve = host(what, count * TIMES)
     assert len(curve) == 10
     print(what, *(f"{done}: {resident} KiB" for done, resident in curve), sep="\n")
-    assert curve[-1][1] - curve[0][1] <= 256, curve
+    # From the third sample on nothing grows; 64 KiB are 32 bytes of each of 2100 loads.
+    assert curve[-1][1] - curve[2][1] <= 64, curve
 
 
 @pytest.mark.parametrize(

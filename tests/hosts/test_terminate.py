@@ -10,7 +10,7 @@ import run_in_host
 
 ERRORS = {
     "fmpy": "FMICallException: fmi2DoStep failed with status 2 (discard)",
-    "fmi": "non-zero exit status",
+    "fmi": "RuntimeError: Error: Discard",
     "fmuloader": "Fmi2Error: fmi2DoStep returned ERROR (3)",
     "libcosimpy": "CosimExecution.step() gave False",
     "fmu_manipulation_toolbox": "FMICallException: fmi2DoStep failed with status 3 (error)",

@@ -85,6 +85,7 @@ def instructions(tmp_path_factory):
         assert done.returncode == 0, done.stderr
         assert float(done.stdout) == pytest.approx(STRETCHES.get(pattern, 1.0), rel=1e-9, abs=0)
         (collected,) = re.findall(r"Collected : (\d+)", done.stderr)
+        assert int(collected) > 10 * calls, "callgrind has not found the function `measured`"
         return round(int(collected) / calls, 1)
 
     return count

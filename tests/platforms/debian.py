@@ -24,7 +24,8 @@ def unpacked(*packages: str) -> Path:
     for folder in ("lists/partial", "cache/archives/partial"):
         (SHELF / "apt" / folder).mkdir(parents=True, exist_ok=True)
     apt("update")
-    listing = apt("install", "--print-uris", "--yes", "--no-install-recommends", *packages)
+    # Also those that are installed: of several programs only some may be.
+    listing = apt("install", "--reinstall", "--print-uris", "--yes", "--no-install-recommends", *packages)
     # 'ADDRESS' NAME_VERSION_ARCHITECTURE.deb SIZE HASH
     files = re.findall(r"^'[^']*' (\S+?)_(\S+?)_\S+\.deb ", listing, flags=re.MULTILINE)
     apt("download", *(f"{name}={version.replace('%3a', ':')}" for name, version in files), folder=parcels)
