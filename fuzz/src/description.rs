@@ -1,5 +1,5 @@
 //! Variables with any texts and numbers: what the writer of `modelDescription.xml` writes, the
-//! reader of the crate `fmi`, which knows nothing of it, reads back.
+//! reader of the crate `fmi`, which knows nothing of it, reads back, and a reader of XML what that one leaves out.
 #![no_main]
 #![allow(dead_code)]
 #![expect(unsafe_code, reason = "the texts of a table live for ever")]
@@ -10,6 +10,8 @@ mod schema;
 mod shortest;
 
 use fmi::fmi2::schema::{ScalarVariable as Read, ScalarVariableElement};
+use quick_xml::XmlVersion;
+use quick_xml::events::Event;
 use schema::{Number, Real, ScalarVariable};
 use serde::Serialize;
 
@@ -60,11 +62,15 @@ libfuzzer_sys::fuzz_target!(
         let ScalarVariableElement::Real(real) = read.elem else {
             panic!("no Real: {text}");
         };
-        let read = real.start.unwrap_or_default();
-        assert!(
-            read.to_bits() == start.to_bits() || read.is_nan() && start.is_nan(),
-            "{text}"
-        );
+        let read = real.start.expect("a start");
+        assert!(are_same(read, start), "{text}");
+        for (key, value) in [("min", min), ("max", -min), ("nominal", start)] {
+            let read = attribute(&text, key).parse().expect("a number");
+            assert!(are_same(read, value), "{key}: {text}");
+        }
+        for (key, value) in [("unit", name), ("displayUnit", description)] {
+            assert_eq!(attribute(&text, key), value, "{text}");
+        }
         assert_eq!(
             (real.derivative, real.reinit),
             (derivative, reinit),
@@ -72,6 +78,26 @@ libfuzzer_sys::fuzz_target!(
         );
     }
 );
+
+fn are_same(read: f64, written: f64) -> bool {
+    read.to_bits() == written.to_bits() || read.is_nan() && written.is_nan()
+}
+
+/// An attribute of the element `Real`.
+fn attribute(text: &str, key: &str) -> String {
+    let mut reader = quick_xml::Reader::from_str(text);
+    loop {
+        match reader.read_event().expect("XML") {
+            Event::Start(element) | Event::Empty(element) if element.name().as_ref() == "Real" => {
+                let found = element.try_get_attribute(key).expect("attributes");
+                let value = found.expect(key).normalized_value(XmlVersion::Implicit1_0);
+                return value.expect("a text").into_owned();
+            }
+            Event::Eof => panic!("no Real: {text}"),
+            _ => {}
+        }
+    }
+}
 
 /// Without what XML cannot hold or may replace by a blank.
 fn legal(text: &str) -> String {

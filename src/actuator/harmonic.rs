@@ -46,7 +46,7 @@ impl Harmonic {
     /// The angle ωt + ϑ at `time`, less whole turns before it is rounded: at
     /// t = 1e9 an f64 angle would have lost half its digits.
     #[inline(always)]
-    pub(super) fn angle(&self, time: DoubleDouble) -> f64 {
+    pub(crate) fn angle(&self, time: DoubleDouble) -> f64 {
         /// 2π in 33 bits, so that its small multiples are exact, and the rest.
         const PARTS: [f64; 2] = [6.283_185_306_936_502_4, 2.430_840_202_602_477e-10];
         const EXACT_TURNS: f64 = 1_048_576.0; // 2^20

@@ -143,11 +143,12 @@ impl<M: Model> Instance<M> {
 
     /// The direction of these changes: a scene and a state into which the setters of the table write them.
     fn direction(&self, knowns: &[u32], changes: &[f64]) -> Result<Direction<M>, Fault> {
+        let begun = self.phase != Phase::Initialization;
         let mut direction = Direction {
             state: M::start(&M::blank()),
             scene: M::blank(),
+            from_now_on: begun,
         };
-        let begun = self.phase != Phase::Initialization;
         for (&known, &change) in knowns.iter().zip(changes) {
             let variable = values::row::<M>(known)?;
             check_derivative(variable.name, change)?;
@@ -156,14 +157,6 @@ impl<M: Model> Instance<M> {
                     let input = of(&mut direction.scene);
                     input.set_value(input.value() + change);
                 }
-                // It has an effect on the future only.
-                (
-                    Access::Setting {
-                        from_now_on: Some(_),
-                        ..
-                    },
-                    _,
-                ) if begun => {}
                 (Access::Setting { get, set, .. }, Kind::Real { .. }) => {
                     let sum = get(&direction.scene) + change;
                     set(&mut direction.scene, sum);

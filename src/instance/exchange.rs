@@ -47,7 +47,12 @@ pub struct Update {
 
 /// A recording of the extremes from this state on, where the scene asks for one.
 fn recording<M: Model>(scene: &M::Scene, time: DoubleDouble, state: &M::State) -> Recording {
-    Recording::begin(M::records_extremes(scene), time, M::second_order(state))
+    let state = M::second_order(state);
+    if M::records_extremes(scene) {
+        Recording::begin(M::limits(scene), time, state)
+    } else {
+        Recording::none(time, state)
+    }
 }
 
 /// The typical sizes of the states, as a state.
@@ -121,8 +126,11 @@ impl<M: Model> Instance<M> {
 
     /// Begins the handling of an event.
     pub fn enter_event_mode(&mut self) {
+        let is_another = self.phase != Phase::EventMode;
         self.phase = Phase::EventMode;
-        if let Simulation::Exchange(now) = &mut self.simulation {
+        if let Simulation::Exchange(now) = &mut self.simulation
+            && is_another
+        {
             now.account.enter_event(&self.scene, now.time, &now.state);
         }
     }

@@ -217,6 +217,9 @@ impl<M: Model> Run<M> {
     ) -> Result<Option<Message>, Fault> {
         self.cut_from = None;
         if self.collapse.is_some() {
+            if std::mem::take(&mut self.stale) {
+                self.motion.rest(scene, &self.clock);
+            }
             self.clock = self.clock.add(DoubleDouble::new(step));
             return Ok(None);
         }

@@ -221,6 +221,9 @@ pub trait Integration<M: Model>: Clone + Debug + Serialize + DeserializeOwned {
     /// The scene is not what has been followed any more: what is read before the next step follows it.
     fn scene_changed(&mut self) {}
 
+    /// Takes over a changed scene at `time` where the actuator is held in its state.
+    fn rest(&mut self, _scene: &M::Scene, _time: &DoubleDouble) {}
+
     /// Starts anew from the present state: the scene has changed.
     fn restart(&mut self);
 
@@ -360,7 +363,7 @@ impl<M: Model> Place<'_, M> {
     pub fn of_state(time: DoubleDouble, state: M::State) -> Self {
         Place::At {
             state,
-            record: Recording::begin(false, time, M::second_order(&state)),
+            record: Recording::none(time, M::second_order(&state)),
             account: M::Account::default(),
         }
     }
@@ -417,4 +420,6 @@ pub struct Direction<M: Model> {
     pub scene: M::Scene,
     /// Change of the present state.
     pub state: M::State,
+    /// After initialization a frequency changes from now on: the angle stays as it is.
+    pub from_now_on: bool,
 }

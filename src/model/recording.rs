@@ -17,11 +17,20 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Records from this state on, or nothing.
+    /// Records from this state on, between these limits.
     #[must_use]
-    pub fn begin(recorded: bool, time: DoubleDouble, state: State) -> Recording {
+    pub fn begin(limits: Limits, time: DoubleDouble, state: State) -> Recording {
         Recording {
-            extremes: recorded.then(|| Extremes::at(state.position)),
+            extremes: Some(Extremes::at(limits.nearest(state.position))),
+            ..Recording::none(time, state)
+        }
+    }
+
+    /// Records nothing.
+    #[must_use]
+    pub fn none(time: DoubleDouble, state: State) -> Recording {
+        Recording {
+            extremes: None,
             time,
             state,
         }

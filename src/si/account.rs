@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sample::Basis;
 use super::{Si, SiScene, SiState};
-use crate::actuator::device::{Exchanged, Source};
+use crate::actuator::device::Source;
 use crate::actuator::drive::Polynomial;
 use crate::arithmetic::double_double::DoubleDouble;
 use crate::model::Account;
@@ -77,10 +77,7 @@ impl Account<Si> for SiAccount {
             ..SiAccount::default()
         };
         if scene.record_energy {
-            let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
-            let (charge, capacitance) = (scene.start.charge, basis.capacitance(state));
-            let before = scene.source_before(&basis.scales, charge, capacitance);
-            account.book_step(&basis, state, before);
+            account.add(scene.exchanged_at_once(&time, state, scene.start.charge));
             account.inputs = Inputs::of(scene, time);
         }
         account.look_for_breakdown(scene, time, state);
@@ -101,7 +98,7 @@ impl Account<Si> for SiAccount {
         if scene.record_energy {
             let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
             let before = self.inputs.total / basis.scales.source(scene.source());
-            self.book_step(&basis, state, before);
+            self.add(exchanged_by_step(&basis, state, before));
             self.inputs = Inputs::of(scene, time);
         }
         self.arrive(scene, time, state);
@@ -112,10 +109,7 @@ impl Account<Si> for SiAccount {
         let before = self.before.take();
         if scene.record_energy {
             if let Some(charge) = before {
-                let basis = Basis::of(scene, &time, DoubleDouble::ZERO);
-                let capacitance = basis.capacitance(state);
-                let before = scene.source_before(&basis.scales, charge, capacitance);
-                self.book_step(&basis, state, before);
+                self.add(scene.exchanged_at_once(&time, state, charge));
             }
             self.inputs = Inputs::of(scene, time);
         }
@@ -165,16 +159,11 @@ impl SiAccount {
         self.breakdown.is_none() && scene.flags_breakdown(&time, state)
     }
 
-    /// Adds the energy that an ideal source exchanges at once when it jumps from this nondimensional value.
-    fn book_step(&mut self, basis: &Basis, state: &SiState, before: f64) {
-        let stage = basis.stage(state, state.motion.position);
-        let exchanged = basis.local().exchanged_by_step(before, &stage);
-        self.add(&exchanged, basis.scales.energy);
-    }
-
-    fn add(&mut self, exchanged: &Exchanged, weight: f64) {
-        for (sum, part) in self.exchanged.iter_mut().zip(exchanged.all()) {
-            *sum += weight * part;
+    /// Adds energies in J. None is added where one is no number: a host's integrator may try states far out.
+    fn add(&mut self, energies: [f64; MOST_INTEGRALS]) {
+        let sums: [f64; MOST_INTEGRALS] = std::array::from_fn(|k| self.exchanged[k] + energies[k]);
+        if sums.iter().all(|sum| sum.is_finite()) {
+            self.exchanged = sums;
         }
     }
 
@@ -230,7 +219,7 @@ impl SiAccount {
             }
         }
         let energy = span * basis.scales.energy;
-        self.add(&Exchanged::from_integrals(&sum), energy);
+        self.add(sum.map(|power| energy * power));
         self.inputs = now;
     }
 }
@@ -242,7 +231,26 @@ fn cubic([from, begin]: [f64; 2], [to, end]: [f64; 2], span: f64, part: f64) -> 
     from + (to - from) * growth + span * part * left * (begin * left - end * part)
 }
 
+/// The energies in J that an ideal source exchanges at once when it jumps from this nondimensional value.
+fn exchanged_by_step(basis: &Basis, state: &SiState, before: f64) -> [f64; MOST_INTEGRALS] {
+    let stage = basis.stage(state, state.motion.position);
+    let exchanged = basis.local().exchanged_by_step(before, &stage);
+    exchanged.all().map(|energy| energy * basis.scales.energy)
+}
+
 impl SiScene {
+    /// The energies in J that an ideal source exchanges at once when it meets this charge in C on the electrodes.
+    pub(super) fn exchanged_at_once(
+        &self,
+        time: &DoubleDouble,
+        state: &SiState,
+        charge: f64,
+    ) -> [f64; MOST_INTEGRALS] {
+        let basis = Basis::of(self, time, DoubleDouble::ZERO);
+        let before = self.source_before(&basis.scales, charge, basis.capacitance(state));
+        exchanged_by_step(&basis, state, before)
+    }
+
     /// The nondimensional value from which an ideal source jumps when it meets this charge in C on the
     /// electrodes.
     pub(super) fn source_before(

@@ -2,9 +2,10 @@
 
 use super::Si;
 use super::sample::{Basis, Sample, own};
-use super::scene::{BRANCHES, SiScene, described, internal, place};
+use super::scene::{BRANCHES, described, internal, place};
 use crate::actuator::device::Source;
 use crate::actuator::device::equation::Load;
+use crate::actuator::drive::{Harmonic, TURN};
 use crate::actuator::scales::Scales;
 use crate::arithmetic::jet::Dual;
 use crate::arithmetic::number::Number;
@@ -42,13 +43,7 @@ impl View<'_, Si> {
             rate: rate * basis.scales.time,
             internal: internal(&basis.device, charge / basis.scales.charge, &dashpots),
         };
-        // The direction may change the amplitude of the built-in voltage also where that is 0.
-        let angle = basis
-            .drive
-            .at(&basis.time)
-            .harmonic()
-            .map(|[_, angle]| angle);
-        let [source, source_rate] = self.source_along(change, angle);
+        let [source, source_rate] = self.source_along(direction);
         let unit = basis.scales.source(scene.source());
         let offset = self.time.since(scene.since);
         let load = Load {
@@ -60,8 +55,8 @@ impl View<'_, Si> {
     }
 
     /// What the source imposes, in its unit, and its rate per second.
-    fn source_along(&self, change: &SiScene, angle: Option<f64>) -> [Dual; 2] {
-        let scene = self.scene;
+    fn source_along(&self, direction: &Direction<Si>) -> [Dual; 2] {
+        let (scene, change) = (self.scene, &direction.scene);
         let source = scene.source();
         let offset = self.time.since(scene.since);
         let input = scene.source_input();
@@ -71,20 +66,30 @@ impl View<'_, Si> {
             return [value, rate];
         }
         let amplitude = Dual::new(scene.alternating[0], change.alternating[0]);
-        let [sine, slope] = self.oscillation(change, angle);
+        let [sine, slope] = self.oscillation(direction);
         [value + amplitude * sine, rate + amplitude * slope]
     }
 
-    /// The sine of the built-in voltage, and its rate per second, where its angle is this.
-    fn oscillation(&self, change: &SiScene, angle: Option<f64>) -> [Dual; 2] {
+    /// The sine of the built-in voltage, and its rate per second, also where its amplitude is 0.
+    fn oscillation(&self, direction: &Direction<Si>) -> [Dual; 2] {
         let [_, frequency, phase] = self.scene.alternating;
-        let turn = std::f64::consts::TAU;
+        let [_, faster, ahead] = direction.scene.alternating;
+        let turned = if direction.from_now_on {
+            0.0
+        } else {
+            self.time.value()
+        };
+        let harmonic = Harmonic {
+            phase,
+            ..Harmonic::OFF.with_frequency(TURN.scale(frequency))
+        };
+        let turn = TURN.high;
         let angle = Dual::new(
-            angle.unwrap_or(turn * frequency * self.time.value() + phase + self.scene.lead),
-            turn * change.alternating[1] * self.time.value() + change.alternating[2],
+            harmonic.angle(*self.time) + self.scene.lead,
+            turn * faster * turned + ahead,
         );
         let quarter = Dual::constant(0.25 * turn);
-        let speed = Dual::new(turn * frequency, turn * change.alternating[1]);
+        let speed = Dual::new(turn * frequency, turn * faster);
         [angle.sin(), speed * (angle + quarter).sin()]
     }
 }

@@ -108,6 +108,14 @@ impl SiMotion {
         state
     }
 
+    /// The present state in SI units, with the charge that is on the electrodes: a changed actuator begins in it.
+    fn carried_over(&self, time: &DoubleDouble) -> SiState {
+        SiState {
+            charge: self.charge_on_electrodes(time),
+            ..self.state()
+        }
+    }
+
     /// The charge on the electrodes in C, before the changes since the last advance.
     pub(super) fn charge_on_electrodes(&self, time: &DoubleDouble) -> f64 {
         let charge = self.at_present(time, |local, stage| {
@@ -202,17 +210,14 @@ impl SiMotion {
             return;
         }
         let (motion, scales) = (scene.motion(), scene.scales());
-        let state = SiState {
-            charge: self.charge_on_electrodes(time),
-            ..self.state()
-        };
+        let state = self.carried_over(time);
         let (sums, extremes) = (self.trajectory.integrals(), self.extremes());
         let energy = self.scales.energy / scales.energy;
         self.trajectory
             .begin_anew(scene, &motion, &scales, &state, self.tolerance);
         self.lead = 0.0;
         self.converted = (0.0, DoubleDouble::ZERO);
-        (self.charge, self.dashpots) = (state.charge, state.dashpots);
+        self.dashpots = state.dashpots;
         (self.motion, self.scales) = (motion, scales);
         self.described = Some(scene.folded().of);
         self.earlier = extremes;
@@ -350,6 +355,12 @@ impl Integration<Si> for SiMotion {
         self.stale = true;
     }
 
+    fn rest(&mut self, scene: &SiScene, time: &DoubleDouble) {
+        if self.stale {
+            self.refold(scene, time);
+        }
+    }
+
     fn restart(&mut self) {
         self.stale = true;
     }
@@ -384,8 +395,8 @@ impl Integration<Si> for SiMotion {
             _ => false,
         };
         let remark = if locks {
-            ", where the material locks (the distance to its locking stretch is below the smallest number: J_m is \
-             too small for these loads)"
+            ", where the material locks (the distance to its locking stretch is too small to go on: J_m is too \
+             small for these loads)"
         } else {
             ""
         };

@@ -329,22 +329,12 @@ impl<O> History<O> {
     }
 }
 
-impl<O> From<History<O>> for Vec<KeptStep<O>> {
-    fn from(history: History<O>) -> Vec<KeptStep<O>> {
-        history.steps
-    }
-}
-
-impl<O: PositionOrigin> TryFrom<Vec<KeptStep<O>>> for History<O> {
-    type Error = &'static str;
-
-    fn try_from(mut steps: Vec<KeptStep<O>>) -> Result<History<O>, &'static str> {
-        if steps.len() > CAPACITY {
-            return Err("more steps than a trajectory keeps");
-        }
-        let mut before: Option<KeptStep<O>> = None;
-        for step in &mut steps {
-            let follows = match before {
+impl<O: PositionOrigin> History<O> {
+    /// Whether the numbers can be those of steps that follow each other without a gap.
+    pub fn is_valid(&self) -> bool {
+        let mut before: Option<&KeptStep<O>> = None;
+        self.steps.iter().all(|step| {
+            let follows = match before.replace(step) {
                 // Where the position is counted from may change in between.
                 Some(last) => {
                     step.begin == last.end()
@@ -353,11 +343,26 @@ impl<O: PositionOrigin> TryFrom<Vec<KeptStep<O>>> for History<O> {
                 }
                 None => step.begin == DoubleDouble::ZERO,
             };
-            if !(step.segment.is_valid() && step.origin.is_finite() && follows) {
-                return Err("a step of the trajectory is damaged");
-            }
+            follows && step.segment.is_valid() && step.origin.is_finite()
+        })
+    }
+}
+
+impl<O> From<History<O>> for Vec<KeptStep<O>> {
+    fn from(history: History<O>) -> Vec<KeptStep<O>> {
+        history.steps
+    }
+}
+
+impl<O> TryFrom<Vec<KeptStep<O>>> for History<O> {
+    type Error = &'static str;
+
+    fn try_from(mut steps: Vec<KeptStep<O>>) -> Result<History<O>, &'static str> {
+        if steps.len() > CAPACITY {
+            return Err("more steps than a trajectory keeps");
+        }
+        for step in &mut steps {
             step.segment.expand();
-            before = Some(*step);
         }
         steps.reserve_exact(CAPACITY - steps.len());
         Ok(History { steps })

@@ -53,6 +53,9 @@ pub struct StepControl {
 /// A step shorter than this part of what it was to be cannot go on.
 pub const SHORTEST: f64 = 1e-12;
 
+/// Nor can one whose square has lost digits, since it is next to the smallest number.
+const LEAST: f64 = 1e-150;
+
 /// By what a step is shortened that says nothing about how long it may be.
 pub const HALVED: f64 = 0.5;
 
@@ -85,7 +88,7 @@ pub fn most_growth(length: f64, longest: f64, before: Option<f64>, acceleration:
 /// to shorten a step that is refused. It may take a shorter step than it is asked for.
 ///
 /// # Errors
-/// The length that is no longer than `shortest`, or NaN.
+/// The length that is no longer than `shortest` or [`LEAST`], or NaN.
 #[inline(always)]
 pub fn first_accepted<T>(
     longest: f64,
@@ -94,7 +97,7 @@ pub fn first_accepted<T>(
 ) -> Result<T, f64> {
     let mut length = longest;
     loop {
-        if length.is_nan() || length <= shortest {
+        if length.is_nan() || length <= shortest.max(LEAST) {
             return Err(length);
         }
         match attempt(&mut length) {

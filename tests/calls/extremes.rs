@@ -139,3 +139,28 @@ fn terminating_can_be_asked_for_by_a_number() {
     assert_eq!(host.get("collapsed"), 1.0);
     assert_eq!(host.set("terminate_on_pull_in", 0.0), ERROR);
 }
+
+/// A host steps beyond the limit before it handles the event there: what is recorded ends at the limit, whether the
+/// window begins before the event is handled or after it.
+#[test]
+fn a_window_that_begins_beyond_a_limit_begins_at_the_limit() {
+    for window_first in [true, false] {
+        let host = Host::in_phase_of(fmi2Type_fmi2ModelExchange, "continuous");
+        host.put(1e-7, [10.5, 1.0]);
+        let handle = || unsafe {
+            assert_eq!(
+                fmi2NewDiscreteStates(host.component, &mut exchange::no_info()),
+                OK
+            );
+        };
+        unsafe { assert_eq!(fmi2EnterEventMode(host.component), OK) };
+        if !window_first {
+            handle();
+        }
+        assert_eq!(host.set("extremes_window", 1.0), OK);
+        if window_first {
+            handle();
+        }
+        assert_eq!(host.get("lambda_highest"), 10.0);
+    }
+}

@@ -50,7 +50,6 @@ fn energies_exchanged_follow_a_change_at_once() {
     host.step(1e-6);
     let residual = |host: &Host| stored(host) - gain(host);
     let (begin, size) = (residual(&host), stored(&host));
-    let mut changes = 0;
     for change in [
         vec![("voltage", 300.0)],
         vec![("voltage", 500.0), ("eta", 0.01)],
@@ -61,14 +60,9 @@ fn energies_exchanged_follow_a_change_at_once() {
         for (name, value) in &change {
             host.set(name, *value).expect(name);
         }
-        // The parameter is another actuator, with which the account begins at the step.
-        if change == [("voltage", 300.0)] || change == [("voltage", 200.0)] {
-            assert!((residual(&host) - begin).abs() < 1e-12 * size, "{change:?}");
-            changes += 1;
-        }
+        assert!((residual(&host) - begin).abs() < 1e-12 * size, "{change:?}");
         host.step(3e-7);
         let error = (residual(&host) - begin).abs() / size;
         assert!(error < 1e-10, "{change:?}: {error:e}");
     }
-    assert_eq!(changes, 2);
 }

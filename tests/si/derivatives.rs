@@ -143,3 +143,44 @@ fn derivatives_where_a_parameter_is_zero() {
     assert_eq!(slope("lambda_ddot", "R_s"), 0.0);
     assert_eq!(slope("lambda_ddot", "J_m"), 0.0);
 }
+
+/// After initialization a frequency changes from now on, and an amplitude of 0 has the phase of the drive, at late
+/// times too.
+#[test]
+fn derivatives_by_the_drive_during_the_motion() {
+    const UNKNOWNS: [&str; 3] = ["supply_voltage", "supply_current", "lambda_ddot"];
+    for (amplitude, frequency, time) in [
+        (100.0, 1e5, 1e-6),
+        (0.0, 1.234567e6, 1e6),
+        (100.0, 1.234567e6, 1e6),
+    ] {
+        let mut host = Host::begun(&[("f_ac", frequency)]);
+        host.step(time);
+        host.set("V_ac", amplitude).expect("an amplitude");
+        host.step(1e-6);
+        for (known, change) in [("V_ac", 1.0), ("f_ac", 1e-3 * frequency)] {
+            let mut slopes = [f64::NAN; 3];
+            let unknowns = UNKNOWNS.map(|name| row(name).0);
+            host.instance
+                .directional_derivative(&unknowns, &[row(known).0], &[change], |k, v| slopes[k] = v)
+                .expect("derivatives");
+            let value = host.get(known);
+            let mut at = |part: f64| {
+                host.set(known, value + part * change).expect(known);
+                UNKNOWNS.map(|name| host.get(name))
+            };
+            let [above, below] = [at(1.0), at(-1.0)];
+            at(0.0);
+            for k in 0..3 {
+                let difference = 0.5 * (above[k] - below[k]);
+                let size = above[k].abs();
+                assert!(
+                    (slopes[k] - difference).abs() < 1e-10 * size,
+                    "{} by {known} at {time}: {} for {difference}",
+                    UNKNOWNS[k],
+                    slopes[k]
+                );
+            }
+        }
+    }
+}

@@ -128,6 +128,42 @@ fn a_resistance_switched_off_for_no_time_keeps_the_charge() {
     pair.agree_in_everything();
 }
 
+/// Where the actuator is held, the electrodes follow the source until the resistance is there.
+#[test]
+fn a_resistance_switched_on_while_held_finds_the_charge_of_before() {
+    let mut host = Host::begun(&[("voltage", 900.0), ("lambda_max", 1.3)]);
+    host.step(3e-6);
+    assert_eq!(host.get("pulled_in"), 1.0);
+    host.set("voltage", 100.0).expect("a voltage");
+    host.step(1e-6);
+    let before = host.get("charge");
+    for step in [0.0, 1e-6, 1e-6] {
+        host.set("R_s", 1e6).expect("a resistance");
+        if step > 0.0 {
+            host.step(step);
+        }
+        for name in ["charge", "charge_state"] {
+            let after = host.get(name);
+            assert!((after / before - 1.0).abs() < 1e-12, "{name}: {after}");
+        }
+    }
+}
+
+/// A host may say more than once that it handles an event.
+#[test]
+fn an_event_that_is_entered_again_is_the_same() {
+    let mut pair = Pair::begun(&[]);
+    pair.advance();
+    let before = pair.agree("charge", 1e-11);
+    let host = &mut pair.theirs.host;
+    host.instance.enter_event_mode();
+    host.set("voltage", 500.0).expect("a voltage");
+    host.instance.enter_event_mode();
+    host.set("R_s", 1e6).expect("a resistance");
+    let after = host.get("charge_state");
+    assert!((after / before - 1.0).abs() < 1e-7, "{before} {after}");
+}
+
 /// An ideal source in the place of a resistance meets the charge that is there, and exchanges the energy of a jump.
 #[test]
 fn a_resistance_switched_off_exchanges_the_energy_of_a_jump() {

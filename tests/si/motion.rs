@@ -268,6 +268,38 @@ fn saved_instances_go_on_bit_for_bit() {
     }
 }
 
+/// Where a material locks, a motion can come so near to its locking stretch that its steps become the shortest.
+#[test]
+fn an_instance_saved_after_a_step_that_ended_early_is_restored() {
+    let mut ended = 0;
+    for locking in [0.01, 0.1, 1.0, 10.0] {
+        let settings = [("J_m", locking)];
+        let [mut host, mut other] = [Host::begun(&settings), Host::begun(&settings)];
+        host.step(1e-6);
+        host.set("voltage", 3e4).expect("a voltage");
+        ended += usize::from(host.instance.do_step(1e-6, 1e-6).is_err());
+        let saved = host.instance.save(Saved::default()).expect("a state");
+        let read = other.instance.saved(saved.bytes()).expect("sound bytes");
+        other.instance.restore(&read).expect("the same kind");
+        assert_eq!(host.get("lambda").to_bits(), other.get("lambda").to_bits());
+        assert_eq!(other.instance.save(Saved::default()), Ok(saved));
+    }
+    assert!(ended > 1, "{ended}");
+}
+
+/// The charge of an actuator without a resistance is no state: what stands for it is the start value.
+#[test]
+fn a_charge_that_is_no_state_is_the_one_of_the_start() {
+    let mut host = Host::begun(&[("charge_start", 5e-12)]);
+    for (name, value) in [("rho", 1101.0), ("R_s", 1e6), ("R_s", 0.0)] {
+        host.step(1e-6);
+        host.set(name, value).expect(name);
+        host.step(1e-6);
+        let charge = host.get("charge_state");
+        assert_eq!(charge == 5e-12, host.get("R_s") == 0.0, "{name}: {charge}");
+    }
+}
+
 /// A parameter that has no effect is tuned after a state was restored: the motion goes on as the saved one does.
 #[test]
 fn a_parameter_without_effect_does_not_tell_a_restored_instance() {

@@ -176,3 +176,23 @@ fn steps_and_parameters_that_overflow_say_why() {
     assert_eq!(host.get("E_conduction"), 0.0);
     host.step(1e-6);
 }
+
+/// A host's integrator tries a state from which no energies follow, and comes back.
+#[test]
+fn a_step_from_far_out_leaves_the_energies_numbers() {
+    let mut host = Host::initializing(Interface::ModelExchange, &[("record_energy", 1.0)]);
+    let instance = &mut host.instance;
+    instance.exit_initialization().expect("a start");
+    instance.new_discrete_states().expect("an update");
+    instance.enter_continuous_time();
+    for (time, stretch) in [(1e-7, 0.0), (2e-7, 1.0)] {
+        instance.set_time(time).expect("a time");
+        let state = [stretch, 0.0, 0.0, 1.0, 1.0, 1.0];
+        instance.set_continuous_states(&state).expect("states");
+        instance.completed_integrator_step().expect("a step");
+    }
+    let saved = host.instance.save(Saved::default()).expect("a state");
+    host.instance.saved(saved.bytes()).expect("sound bytes");
+    assert!(host.get("supplied_electrical") > 0.0);
+    assert_eq!(host.get("lost_damping"), 0.0);
+}

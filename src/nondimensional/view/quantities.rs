@@ -81,7 +81,11 @@ impl Sample<Dual> {
         held: Option<Limit>,
         direction: &Direction<Nondimensional>,
     ) -> Sample<Dual> {
-        let (voltage, prestress) = scene.drive.along(&direction.scene.drive, time);
+        let mut change = direction.scene.drive;
+        if direction.from_now_on {
+            change.harmonic.frequency = 0.0;
+        }
+        let (voltage, prestress) = scene.drive.along(&change, time);
         if let Some(limit) = held {
             let change = direction.scene.limits;
             let change = match limit {

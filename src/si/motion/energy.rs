@@ -12,21 +12,28 @@ impl SiMotion {
     #[must_use]
     pub fn exchanged(&self, scene: &SiScene, time: &DoubleDouble) -> Exchanged {
         let mut sums = self.trajectory.integrals();
-        if self.stale && self.motion.records_energy && self.follows(scene) {
+        if !(self.stale && self.motion.records_energy) {
+            return Exchanged::from_integrals(&sums.map(|sum| sum * self.scales.energy));
+        }
+        let jump = if self.follows(scene) {
             let motion = DeviceMotion {
                 drive: scene.drive(&self.scales),
                 ..self.motion
             };
-            let step = self.at_present(time, |local, stage| {
+            let jump = self.at_present(time, |local, stage| {
                 let (origin, _) = self.stretch_from_origin();
                 let now = motion.at(&self.reached(time), &origin);
                 now.exchanged_by_step(local.load(0.0).source, stage).all()
             });
-            sums.iter_mut()
-                .zip(step)
-                .for_each(|(sum, step)| *sum += step);
+            jump.map(|energy| energy * self.scales.energy)
+        } else {
+            let state = self.carried_over(time);
+            scene.exchanged_at_once(time, &state, state.charge)
+        };
+        for (sum, jump) in sums.iter_mut().zip(jump) {
+            *sum = *sum * self.scales.energy + jump;
         }
-        Exchanged::from_integrals(&sums.map(|sum| sum * self.scales.energy))
+        Exchanged::from_integrals(&sums)
     }
 
     /// Adds the energy that an ideal source exchanges at once when it meets this charge, in C, on the electrodes.

@@ -22,7 +22,8 @@ impl<M: Method> Integrator<M> {
         };
         let first = self.history.steps().first();
         let latest = self.latest_unseen();
-        self.settings.control.is_valid()
+        self.history.is_valid()
+            && self.settings.control.is_valid()
             && self.settings.limits.are_valid()
             && self.start.time.is_finite()
             && self.start.origin.is_finite()
