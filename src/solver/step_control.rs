@@ -88,7 +88,7 @@ pub fn most_growth(length: f64, longest: f64, before: Option<f64>, acceleration:
 /// to shorten a step that is refused. It may take a shorter step than it is asked for.
 ///
 /// # Errors
-/// The length that is no longer than `shortest` or [`LEAST`], or NaN.
+/// The length that is no longer than `shortest` or 1e-150, or NaN.
 #[inline(always)]
 pub fn first_accepted<T>(
     longest: f64,
