@@ -31,10 +31,11 @@ smallest of the device is its charge of some picocoulombs."""
 
 OTHERS = ("win64", "aarch64-linux")
 FUSED = " fma " in Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").is_file() else False
-LIMIT = 1e-12 if FUSED else 1e-10
-"""Largest difference from 64-bit Linux, in units of the variable's largest value in the run. The order of operations is
-the same everywhere; sine and power come from the C library of the platform, and a processor for 64-bit Linux
-without fused multiply-add rounds more often."""
+LIMITS = {"win64": 1e-15, "aarch64-linux": 1e-11} if FUSED else dict.fromkeys(OTHERS, 1e-10)
+"""Largest difference from 64-bit Linux, in units of the variable's largest value in the run. On Windows only sine and
+power, which come from the C library, round otherwise. On Arm registers hold two numbers, and x'' has fewer operations.
+A drive near resonance makes 3e-12 of that in the energy. A processor for 64-bit Linux without fused multiply-add rounds
+more often."""
 
 
 def numbers(rows) -> np.ndarray:
@@ -56,7 +57,7 @@ def test_every_platform_gives_the_same_trajectory(simulate, name, scene):
     difference = np.abs(np.subtract(other, linux, where=~same, out=np.zeros_like(linux)) / largest).max(axis=0)
     print(f"\n{name}, {scene}: {same.mean():.1%} equal bit for bit, largest differences", end=" ")
     print(", ".join(f"{output} {value:.1e}" for output, value in zip(OUTPUTS[model], difference, strict=True)), end=" ")
-    assert difference.max() <= LIMIT
+    assert difference.max() <= LIMITS[name]
 
 
 @pytest.mark.parametrize(("model", "variable"), [(PAPER, "c"), (DEVICE, "H")])
