@@ -124,8 +124,6 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
     """Raw rows: free-running, in communication steps, with something skipped or not, many scenes."""
     free, steps, skips, ensembles = [], [], [], []
     names = options.cases.split(",")
-    if unknown := {*names} - {case.name for case in ALL_CASES}:
-        raise SystemExit(f"there is no case {', '.join(sorted(unknown))}")
     cases = [case for case in ALL_CASES if case.name in names]
     for number in range(1, options.rounds + 1):
         for case in cases:
@@ -143,6 +141,8 @@ def measure(options, rivals: Rivals) -> tuple[list[dict], list[dict], list[dict]
 
 def main() -> None:
     options = arguments()
+    if unknown := {*options.cases.split(",")} - {case.name for case in ALL_CASES}:
+        raise SystemExit(f"there is no case {', '.join(sorted(unknown))}")
     whole = options.cases == ",".join(case.name for case in ALL_CASES)
     if not whole and (options.records is None or options.figures == FIGURES):
         raise SystemExit("a part of the cases does not make the record: name other places with --records and --figures")

@@ -47,12 +47,8 @@ pub struct Update {
 
 /// A recording of the extremes from this state on, where the scene asks for one.
 fn recording<M: Model>(scene: &M::Scene, time: DoubleDouble, state: &M::State) -> Recording {
-    let state = M::second_order(state);
-    if M::records_extremes(scene) {
-        Recording::begin(M::limits(scene), time, state)
-    } else {
-        Recording::none(time, state)
-    }
+    let limits = M::records_extremes(scene).then(|| M::limits(scene));
+    Recording::begin(limits, time, M::second_order(state))
 }
 
 /// The typical sizes of the states, as a state.
@@ -124,13 +120,13 @@ impl<M: Model> Instance<M> {
         }
     }
 
-    /// Begins the handling of an event.
+    /// Begins the handling of an event, unless one is being handled.
     pub fn enter_event_mode(&mut self) {
-        let is_another = self.phase != Phase::EventMode;
+        if self.phase == Phase::EventMode {
+            return;
+        }
         self.phase = Phase::EventMode;
-        if let Simulation::Exchange(now) = &mut self.simulation
-            && is_another
-        {
+        if let Simulation::Exchange(now) = &mut self.simulation {
             now.account.enter_event(&self.scene, now.time, &now.state);
         }
     }

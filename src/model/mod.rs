@@ -363,7 +363,7 @@ impl<M: Model> Place<'_, M> {
     pub fn of_state(time: DoubleDouble, state: M::State) -> Self {
         Place::At {
             state,
-            record: Recording::none(time, M::second_order(&state)),
+            record: Recording::begin(None, time, M::second_order(&state)),
             account: M::Account::default(),
         }
     }

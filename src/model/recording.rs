@@ -17,20 +17,11 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Records from this state on, between these limits.
+    /// Records from this state on, between these limits, or nothing where there are none.
     #[must_use]
-    pub fn begin(limits: Limits, time: DoubleDouble, state: State) -> Recording {
+    pub fn begin(limits: Option<Limits>, time: DoubleDouble, state: State) -> Recording {
         Recording {
-            extremes: Some(Extremes::at(limits.nearest(state.position))),
-            ..Recording::none(time, state)
-        }
-    }
-
-    /// Records nothing.
-    #[must_use]
-    pub fn none(time: DoubleDouble, state: State) -> Recording {
-        Recording {
-            extremes: None,
+            extremes: limits.map(|limits| Extremes::at(limits.nearest(state.position))),
             time,
             state,
         }

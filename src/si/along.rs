@@ -5,7 +5,7 @@ use super::sample::{Basis, Sample, own};
 use super::scene::{BRANCHES, described, internal, place};
 use crate::actuator::device::Source;
 use crate::actuator::device::equation::Load;
-use crate::actuator::drive::{Harmonic, TURN};
+use crate::actuator::drive::TURN;
 use crate::actuator::scales::Scales;
 use crate::arithmetic::jet::Dual;
 use crate::arithmetic::number::Number;
@@ -72,20 +72,16 @@ impl View<'_, Si> {
 
     /// The sine of the built-in voltage, and its rate per second, also where its amplitude is 0.
     fn oscillation(&self, direction: &Direction<Si>) -> [Dual; 2] {
-        let [_, frequency, phase] = self.scene.alternating;
+        let [_, frequency, _] = self.scene.alternating;
         let [_, faster, ahead] = direction.scene.alternating;
         let turned = if direction.from_now_on {
             0.0
         } else {
             self.time.value()
         };
-        let harmonic = Harmonic {
-            phase,
-            ..Harmonic::OFF.with_frequency(TURN.scale(frequency))
-        };
         let turn = TURN.high;
         let angle = Dual::new(
-            harmonic.angle(*self.time) + self.scene.lead,
+            self.scene.oscillation().angle(*self.time) + self.scene.lead,
             turn * faster * turned + ahead,
         );
         let quarter = Dual::constant(0.25 * turn);

@@ -167,12 +167,21 @@ impl SiScene {
         }
     }
 
+    /// The oscillation of the built-in voltage in seconds, without its amplitude.
+    pub(super) fn oscillation(&self) -> Harmonic {
+        let [_, frequency, phase] = self.alternating;
+        Harmonic {
+            phase,
+            ..Harmonic::OFF.with_frequency(TURN.scale(frequency))
+        }
+    }
+
     /// Changes the frequency of the built-in voltage, in Hz, at the time at which the inputs were set. Its phase
     /// stays continuous.
     pub fn retune(&mut self, frequency: f64) {
         let mut drive = Drive::constant(0.0, 0.0);
         drive.since = self.since;
-        drive.harmonic = Harmonic::OFF.with_frequency(TURN.scale(self.alternating[1]));
+        drive.harmonic = self.oscillation();
         drive.lead = self.lead;
         drive.retune(TURN.scale(frequency));
         self.lead = drive.lead;

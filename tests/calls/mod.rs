@@ -23,6 +23,7 @@ mod table;
 use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 
+use crate::processor_time;
 use DielectricElastomerActuator::*;
 use dielectric_elastomer_actuator::model::Model;
 use dielectric_elastomer_actuator::nondimensional::Nondimensional;

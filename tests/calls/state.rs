@@ -46,7 +46,7 @@ impl Host {
     /// Steps of all lengths have statuses that are not fatal, within reasonable time,
     /// and what is read with OK is a number.
     fn goes_on(&self) -> Result<(), TestCaseError> {
-        let begin = crate::processor_time::of_this_thread();
+        let begin = processor_time::of_this_thread();
         for step in [1e-3, 0.1, 1.0, 30.0] {
             for reference in 0..VARIABLES.len() as u32 {
                 let mut value = 0.0;
@@ -60,7 +60,7 @@ impl Host {
             let status = self.step(self.time(), step);
             prop_assert!(status <= ERROR, "status {status}: {}", self.last_line());
         }
-        prop_assert!(crate::processor_time::of_this_thread() - begin < PATIENCE);
+        prop_assert!(processor_time::of_this_thread() - begin < PATIENCE);
         Ok(())
     }
 

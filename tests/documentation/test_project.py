@@ -1,12 +1,13 @@
 """What is said about the project as a whole is said in one way: citation, versions, lints."""
 
 import re
-import subprocess
 import tomllib
 from pathlib import Path
 
 import pytest
 import yaml
+
+from linked import tree
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAPER = "Nonlinear dynamics of miniaturized dielectric elastomer actuators with surface effects"
@@ -63,9 +64,7 @@ def test_every_crate_has_the_lints_of_the_workspace(path):
 def test_packager_and_tests_share_one_build_of_the_actuator():
     def crates(*selection: str) -> set[str]:
         """Each crate with its features."""
-        words = ["cargo", "tree", "--locked", "--prefix", "none", "--format", "{p} {f}", *selection]
-        lines = subprocess.run(words, cwd=REPOSITORY, check=True, capture_output=True, text=True).stdout
-        return {line.removesuffix(" (*)") for line in lines.splitlines()}
+        return {line.removesuffix(" (*)") for line in tree("--format", "{p} {f}", *selection).splitlines()}
 
     of_the_packager = crates("--package", "packaging", "--edges", "normal,build")
     assert len(of_the_packager) > 50

@@ -15,9 +15,14 @@ TRIPLES = {
 """Target triple by the folder of the binary."""
 
 
+def tree(*selection: str) -> str:
+    """What cargo says of the tree of crates, a line each."""
+    words = ["cargo", "tree", "--locked", "--prefix", "none", *selection]
+    return subprocess.run(words, cwd=REPOSITORY, capture_output=True, text=True, check=True).stdout
+
+
 def crates(package: str, triples: Iterable[str]) -> set[tuple[str, str]]:
     """Names and versions of the crates of others that are linked into a package for these targets."""
-    words = ["cargo", "tree", "--locked", "--edges", "normal,no-proc-macro", "--prefix", "none", "--format", "{p}"]
-    words += [word for triple in triples for word in ("--target", triple)]
-    done = subprocess.run([*words, "--package", package], cwd=REPOSITORY, capture_output=True, text=True, check=True)
-    return set(re.findall(r"^(\S+) v(\S+)(?: \(\*\))?$", done.stdout, flags=re.MULTILINE))
+    targets = [word for triple in triples for word in ("--target", triple)]
+    linked = tree("--edges", "normal,no-proc-macro", "--format", "{p}", *targets, "--package", package)
+    return set(re.findall(r"^(\S+) v(\S+)(?: \(\*\))?$", linked, flags=re.MULTILINE))

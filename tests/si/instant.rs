@@ -137,8 +137,8 @@ fn a_resistance_switched_on_while_held_finds_the_charge_of_before() {
     host.set("voltage", 100.0).expect("a voltage");
     host.step(1e-6);
     let before = host.get("charge");
+    host.set("R_s", 1e6).expect("a resistance");
     for step in [0.0, 1e-6, 1e-6] {
-        host.set("R_s", 1e6).expect("a resistance");
         if step > 0.0 {
             host.step(step);
         }

@@ -184,9 +184,9 @@ fn extremes_give_a_step_or_a_reason<M: Model>(count: u64) -> usize {
             let step = unit * random.of(&[1e-9, 1e-6, 1e-3, 1e-2]);
             let current = instance.last_successful_time();
             history.push(format!("step {step:e}"));
-            let begin = crate::processor_time::of_this_thread();
+            let begin = processor_time::of_this_thread();
             let outcome = instance.do_step(current, step);
-            let taken = crate::processor_time::of_this_thread() - begin;
+            let taken = processor_time::of_this_thread() - begin;
             if taken > slowest.0 {
                 slowest = (taken, history.clone());
             }
@@ -238,9 +238,9 @@ fn a_step_that_is_too_long_for_its_drive_is_discarded_with_a_reason() {
         instance.setup_experiment(None, 0.0, None).expect("legal");
         instance.enter_initialization();
         instance.exit_initialization().expect("legal");
-        let begin = crate::processor_time::of_this_thread();
+        let begin = processor_time::of_this_thread();
         let outcome = instance.do_step(0.0, 1e6);
-        let taken = crate::processor_time::of_this_thread() - begin;
+        let taken = processor_time::of_this_thread() - begin;
         let what = format!("ω = {frequency}, c = {aspect}: {outcome:?} in {taken:?}");
         assert_eq!(outcome.is_err(), is_too_long, "{what}");
         if let Err(fault) = outcome {

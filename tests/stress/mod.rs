@@ -22,6 +22,7 @@ mod varying;
 
 use crate::clocked::Clocked;
 use crate::largest::largest;
+use crate::processor_time;
 use dielectric_elastomer_actuator::actuator::drive::Harmonic;
 use dielectric_elastomer_actuator::actuator::{Coefficients, Drive, Motion, Parameters};
 use dielectric_elastomer_actuator::solver::State;
